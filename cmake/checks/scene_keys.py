@@ -34,18 +34,18 @@ TABLES = {
     "Media": [["medium", "scattering"]],
     "Principled": [["principled", "subsurface"]],
     "Textures": [["texture", "textured"]],
-    "Shapes": [["shape"], ["quad", "box", "mesh", "sphere", "disk", "obj", "ply", "instance"]],
+    "Shapes": [["shape"], ["quad", "box", "mesh", "sphere", "cone", "disk", "obj", "ply", "instance"]],
     "Lights": [["light", "point", "spot", "directional"]],
     "Environment": [["environment"]],
     "Sky": [["sky"]],
 }
 # Objects that are the value of the key of their name: the page calls their keys NAME.KEY.
-PARTS = {"absorption", "scattering", "subsurface", "normal_map", "bump_map", "opacity"}
+PARTS = {"cone", "absorption", "scattering", "subsurface", "normal_map", "bump_map", "opacity"}
 # Where the schema has the keys that all variants of an object share.
 COMMON = {"material": {"normal_map": "normalMap", "bump_map": "bumpMap", "opacity": "opacity",
                        "vertex_colors": "vertexColors"},
-          "shape": {key: f"shape_{key}" for key in ("name", "material", "emission", "two_sided", "shadow_catcher",
-                                                         "transform")},
+          "shape": {key: f"shape_{key}" for key in ("name", "material", "emission", "two_sided", "spread",
+                                                         "shadow_catcher", "transform")},
           "light": {"name": "light_name"}}
 # What the list of principled values does not say.
 TEXTURED = {"color": "texturedReflectance", "radiance": "texturedRadiance", "weight": "texturedWeight",
@@ -188,7 +188,7 @@ def places_of(schema):
     places = {"scene": [schema], "film": [schema["properties"]["film"]],
               "integrator": [schema["properties"]["integrator"]], "environment": defs["environment"]["oneOf"],
               "normal_map": [defs["normalMap"]], "bump_map": [defs["bumpMap"]], "opacity": [defs["opacity"]["oneOf"][1]]}
-    places |= {name: [defs[name]] for name in ("camera", "lens", "texture", "absorption", "scattering", "subsurface", "medium",
+    places |= {name: [defs[name]] for name in ("camera", "cone", "lens", "texture", "absorption", "scattering", "subsurface", "medium",
                                                "sky")}
     for family, common in COMMON.items():
         places[family] = [{"properties": {key: defs[name] for key, name in common.items()}}]

@@ -11,6 +11,7 @@
 #include "base/color.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "gpu_scene/beam.h"
 #include "gpu_scene/texture_mean.h"
 #include "scene/materials.h"
 
@@ -66,6 +67,7 @@ Extent extent_of(uint kind, const Primitive& primitive) {
     };
     switch (kind) {
         case LIGHT_SPHERE:
+        case LIGHT_BEAM:
             return {a, b, vec3(0.0f), 4.0 * double(PI) * double(b.x) * double(b.x)};
         case LIGHT_DISK:
             return flat(b, c, double(PI));
@@ -89,15 +91,24 @@ AreaLights build_area_lights(const Scene& scene, const FlatScene& flat) {
         const auto [p, e1, e2, area] = extent_of(piece.kind, flat.primitives[piece.primitive]);
         // Rays pass what is culled from behind, and see nothing of it.
         const bool two_sided = emission.two_sided && !is_culled(scene.materials[shape.material]);
-        const double power = area *
+        LightRecord light{.kind = piece.kind,
+                          .p = p,
+                          .e1 = e1,
+                          .e2 = e2,
+                          .radiance = emission.radiance.factor,
+                          .spread = 0.0f,
+                          .two_sided = two_sided ? 1u : 0u,
+                          .pdf_area = float(1.0 / area),
+                          .pmf = 0.0f,
+                          .error = float(piece.error)};
+        const double power = area * set_beam(light, shape) *
                              luminance(mean_radiance(scene, pyramids, emission, piece.kind, piece.uv)) *
                              (two_sided ? 2.0 : 1.0);
         result.of_pieces.push_back(power == 0.0 ? NO_LIGHT : uint32_t(result.pieces.size()));
         if (power == 0.0) continue;
         result.pieces.push_back(i);
         result.lights.powers.push_back(power);
-        result.lights.records.push_back({piece.kind, p, e1, e2, emission.radiance.factor, two_sided ? 1u : 0u,
-                                         float(1.0 / area), 0.0f, float(piece.error)});
+        result.lights.records.push_back(light);
     }
     return result;
 }

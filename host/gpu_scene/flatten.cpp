@@ -151,8 +151,8 @@ class Flattener {
         flat_.coarse_spheres += error > COARSE * double(radius.x);
         // All around and from pole to pole; where the poles get too much, that only makes the choice of
         // lights worse.
-        const uint light =
-            add_piece(shape, LIGHT_SPHERE, error, piece_uv(vec2(0, 0), vec2(1, 0), vec2(0, 1)));
+        const uint light = add_piece(shape, shape.beam.cone ? LIGHT_BEAM : LIGHT_SPHERE, error,
+                                     piece_uv(vec2(0, 0), vec2(1, 0), vec2(0, 1)));
         add_primitive(
             {PRIMITIVE_SPHERE, center, radius, vec3(0.0f), vec3(0.0f)},
             {uvec2(flat_.id_count++), shape.material, 0, light, power_of_two_above(error), passable_});

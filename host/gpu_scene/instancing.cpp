@@ -45,6 +45,10 @@ bool is_similarity(const Transform& transform) {
     return off <= TOLERANCE * mean;  // False for NaN.
 }
 
+bool emits_alike(const Shape& a, const Shape& b) {
+    return a.emission == b.emission && a.beam == b.beam;
+}
+
 // Tells which shapes emit alike.
 class Emitters {
   public:
@@ -58,7 +62,7 @@ class Emitters {
         const Kind kind(mesh, shape.material, factor.x, factor.y, factor.z, shape.emission->two_sided);
         std::vector<uint32_t>& known = first_[kind];
         const auto same = std::ranges::find_if(
-            known, [&](uint32_t other) { return scene_.shapes[other].emission == shape.emission; });
+            known, [&](uint32_t other) { return emits_alike(scene_.shapes[other], shape); });
         if (same != known.end()) return {mesh, *same};
         known.push_back(index);
         return {mesh, index};

@@ -32,6 +32,11 @@ void append_lights(PoweredLights& all, const PoweredLights& lights) {
     all.powers.insert(all.powers.end(), lights.powers.begin(), lights.powers.end());
 }
 
+// What a light adds to the constant LIGHTS.
+uint32_t bits_of(const LightRecord& light) {
+    return 1u << light.kind | (light.spread > 0.0f ? 1u << LIGHT_SPREAD : 0u);
+}
+
 // The records of placed lamps, complete but for their pmf, where the table of lights and its alias tables
 // have the lamps' lights from `first` and from `alias` on.
 std::vector<LampRecord> lamp_records(const SceneLights& lights, uint32_t first, uint32_t alias) {
@@ -68,7 +73,7 @@ void append_lamp_lights(LightArrays& arrays, std::vector<AliasEntry>& alias, con
             LightRecord light = lights.records[i];
             light.pmf = float(lights.powers[i] / lamp.power);
             append(arrays.lights, pack(light));
-            arrays.facts.lights_present |= 1u << light.kind;
+            arrays.facts.lights_present |= bits_of(light);
         }
         std::ranges::copy(build_alias_table(lights.powers), std::back_inserter(alias));
         arrays.facts.light_count += uint32_t(lights.records.size());
@@ -126,7 +131,7 @@ LightArrays build_light_arrays(const SceneLights& lights, const Box& box, bool o
     result.lights.reserve(all.records.size() * LIGHT_WORDS);
     for (size_t i = 0; i < all.records.size(); ++i) {
         const LightRecord& light = all.records[i];
-        result.facts.lights_present |= 1u << light.kind;
+        result.facts.lights_present |= bits_of(light);
         if (light.kind == LIGHT_LAMP) {
             LampRecord lamp = lamps[i - first_lamp];
             lamp.pmf = light.pmf;

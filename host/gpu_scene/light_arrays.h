@@ -20,7 +20,7 @@ namespace candela {
 
 struct LightFacts {
     uint32_t light_count = 0;     // Lamps, and their lights once, are among them.
-    uint32_t lights_present = 0;  // Bit i: a light of kind i.
+    uint32_t lights_present = 0;  // The constant LIGHTS.
     LightGroups light_groups{};
     bool light_tree_pays = false;  // See light_sampler_rule.h.
 };

@@ -23,7 +23,7 @@ constexpr uint32_t LARGE = 4096;  // A smaller range has at most this many light
 // Multiplied by other factors, a lower one could give denormal floats.
 constexpr double MIN_STRENGTH = 1e-30;
 // Bounds the error of a cosine, and the relative error of a length, of floats.
-constexpr double ROUNDING = 4e-7;
+constexpr double BOUNDS_ROUNDING = 4e-7;
 
 // A node to build, `depth` nodes below the root.
 struct Job {
@@ -97,7 +97,7 @@ uint32_t half_sine(double angle) {
 
 // An upper bound on the angle with that cosine, which is rounded.
 double max_angle(float cosine) {
-    return std::acos(std::max(double(cosine) - ROUNDING, -1.0));
+    return std::acos(std::max(double(cosine) - BOUNDS_ROUNDING, -1.0));
 }
 
 // Writes the bounds of the lights of a range.
@@ -126,7 +126,7 @@ void put_child(std::span<const LightRef> lights, const LightRange& range, LightT
     }
     normals = std::max(normals, max_angle(min_cosine));
     child.centre = centre;
-    child.radius = float(std::sqrt(radius2) * (1.0 + ROUNDING));
+    child.radius = float(std::sqrt(radius2) * (1.0 + BOUNDS_ROUNDING));
     child.strength = float(strength);
     child.cone = half_sine(normals) | half_sine(double(emission)) << LIGHT_TREE_EMISSION_SHIFT |
                  two_sided * LIGHT_TREE_BOTH_SIDES;

@@ -8,6 +8,7 @@
 
 #include "base/color.h"
 #include "gpu_scene/append.h"
+#include "gpu_scene/beam.h"
 #include "gpu_scene/punctual_lights.h"
 
 namespace candela {
@@ -29,22 +30,36 @@ LightBounds all_around(const Box& box, double strength) {
     return {.box = box, .normals = PI, .emission = HALF_PI, .strength = strength};
 }
 
-LightBounds bounds_of_spot(const LightRecord& light) {
-    const double outer = double(light.e2.x), inner = outer - 1.0 / double(light.e2.y);
-    return {.box = around(light.p, vec3(0.0f)),
-            .axis = light.e1,
+// Of a light that emits in a cone.
+LightBounds bounds_in_cone(const Box& box, vec3 axis, double outer, double steepness, double strength) {
+    const double inner = outer - 1.0 / steepness;
+    return {.box = box,
+            .axis = axis,
             .normals = float(angle_of(inner)),
             .emission = float(angle_of(outer) - angle_of(inner)),
-            .strength = double(luminance(light.radiance))};
+            .strength = strength};
 }
 
-// `light` is a triangle, parallelogram or disk.
-LightBounds bounds_of_flat(const LightRecord& light, double strength) {
+LightBounds bounds_of_spot(const LightRecord& light) {
+    return bounds_in_cone(around(light.p, vec3(0.0f)), light.e1, double(light.e2.x), double(light.e2.y),
+                          double(luminance(light.radiance)));
+}
+
+// From the whole of the sphere, light leaves in each direction of the cone.
+LightBounds bounds_of_beam(const LightRecord& light) {
+    const double radius = double(light.e1.x);
+    return bounds_in_cone(around(light.p, vec3(light.e1.x)), vec3(light.e1.y, light.e1.z, light.e2.z),
+                          double(light.e2.x), std::abs(double(light.e2.y)),
+                          double(PI) * radius * radius * double(luminance(light.radiance)));
+}
+
+// `light` is a triangle, parallelogram or disk; `one_side` is the power over pi of one side.
+LightBounds bounds_of_flat(const LightRecord& light, double one_side) {
     LightBounds bounds{.box = {},
                        .axis = vec3(normalize(cross(dvec3(light.e1), dvec3(light.e2)))),
-                       .emission = HALF_PI,
+                       .emission = std::atan2(1.0f, light.spread),
                        .two_sided = light.two_sided != 0,
-                       .strength = strength};
+                       .strength = one_side / fraction_within(light.spread)};
     if (light.kind == LIGHT_DISK) {
         bounds.box = around(light.p, sqrt(light.e1 * light.e1 + light.e2 * light.e2));
         return bounds;
@@ -71,6 +86,8 @@ LightBounds bounds_of(const LightRecord& light, double power) {
             return all_around(around(light.p, vec3(0.0f)), 0.25 * power);
         case LIGHT_SPOT:
             return bounds_of_spot(light);
+        case LIGHT_BEAM:
+            return bounds_of_beam(light);
         default:
             return bounds_of_flat(light, one_side);
     }

@@ -8,6 +8,7 @@
 #include "base/color.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "gpu_scene/beam.h"
 #include "scene/geometry.h"
 
 namespace candela {
@@ -18,12 +19,6 @@ constexpr double FARTHEST = 1e18;
 
 // Floats do not tell the directions of a smaller disk apart [rad, across]: it counts as a single direction.
 constexpr float SMALLEST_DISK = 1e-4f;
-
-// Twice the square of the sine of half an angle: 1 - cos, without cancellation.
-double one_minus_cos(double angle) {
-    const double s = std::sin(0.5 * angle);
-    return 2.0 * s * s;
-}
 
 // The integral of the cosine to its middle over the disk of a sun [sr]: pi times the squared sine of half the
 // angle across.
@@ -43,23 +38,16 @@ class PunctualLights {
     }
 
     void add(const std::string& name, const SpotLight& light) {
-        // Beyond that, the edge is harder than floats can tell.
-        constexpr double STEEPEST = 1e30;
         LightRecord record = make_record(name, LIGHT_SPOT, light.position, light.intensity);
-        const double inner = one_minus_cos(double(light.inner_angle));
-        const double outer = one_minus_cos(double(light.outer_angle));
-        record.e1 = vec3(direction_of(light.direction));
-        const bool smooth = light.falloff == SpotFalloff::smoothstep;
-        record.e2 =
-            vec3(float(outer), float(std::min(1.0 / (outer - inner), STEEPEST)), smooth ? 1.0f : 0.0f);
-        // The means between the angles of t^2 and t^2 (3 - 2t), where t is uniform.
-        append(record, 2.0 * (inner + (outer - inner) / (smooth ? 2.0 : 3.0)));
+        record.e1 = vec3(unit_direction(light.direction));
+        record.e2 = cone_parameters(light.cone);
+        append(record, 4.0 * mean_in_cone(light.cone));
     }
 
     void add(const std::string& name, const DirectionalLight& light) {
         LightRecord record{};
         record.kind = LIGHT_DIRECTIONAL;
-        record.e1 = vec3(-direction_of(light.direction));
+        record.e1 = vec3(-unit_direction(light.direction));
         record.radiance = light.irradiance;
         if (light.angle < SMALLEST_DISK) return append(record, radius_ * radius_);
         record.kind = LIGHT_SUN;
@@ -77,11 +65,6 @@ class PunctualLights {
     PoweredLights take() { return std::move(lights_); }
 
   private:
-    // Divided by its greatest component first, which keeps squares from over- and underflowing.
-    static dvec3 direction_of(dvec3 d) {
-        return normalize(d / std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}));
-    }
-
     // Of a light at a point. An intensity is a power, which lengths of the frame measure in units of their
     // own, too.
     LightRecord make_record(const std::string& name, uint kind, dvec3 position, vec3 intensity) const {

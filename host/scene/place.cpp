@@ -32,7 +32,7 @@ bool place_one(Quad& quad, const Transform& transform) {
 bool place_one(Sphere& sphere, const Transform& transform) {
     const std::optional<double> scale = transform.uniform_scale();
     if (!scale) return false;
-    sphere = {transform.point(sphere.center), *scale * sphere.radius};
+    sphere = {transform.point(sphere.center), *scale * sphere.radius, transform.vector(sphere.axis)};
     return true;
 }
 

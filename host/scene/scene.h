@@ -234,6 +234,33 @@ struct Emission {
     bool operator==(const Emission&) const = default;
 };
 
+// Between the angles of a cone; t is linear in the cosine, 0 at the outer angle, 1 at the inner.
+enum class SpotFalloff {
+    square,      // t^2, as glTF's KHR_lights_punctual recommends.
+    smoothstep,  // t^2 (3 - 2t), as in Cycles.
+};
+
+// The angles of a cone in which light leaves.
+struct Cone {
+    float inner_angle = 0.0f;       // From the axis [rad]; 0 <= inner_angle < outer_angle <= pi / 2.
+    float outer_angle = PI / 4.0f;  // Beyond it, there is no light.
+    SpotFalloff falloff = SpotFalloff::square;
+
+    bool operator==(const Cone&) const = default;
+};
+
+// In which directions a surface emits.
+struct Beam {
+    // The full angle around the normal [rad], from MIN_SPREAD_DEGREES to pi. At half of it, the radiance has
+    // fallen to 0, as linear in the tangent of the angle to the normal, as through a honeycomb; pi: it does
+    // not fall.
+    float spread = PI;
+    std::optional<Cone> cone{};  // Of a sphere: only in that cone around Sphere::axis.
+
+    bool operator==(const Beam&) const = default;
+};
+inline constexpr float MIN_SPREAD_DEGREES = 0.01f;
+
 // Triangles over shared vertices, counter-clockwise seen from the front, in a space of their own. The array
 // of an attribute is empty or has one element per position.
 struct TriangleMesh {
@@ -270,7 +297,8 @@ struct Quad {
 // A true sphere; its front is outside.
 struct Sphere {
     dvec3 center{0};
-    double radius = 1.0;  // Above 0.
+    double radius = 1.0;   // Above 0.
+    dvec3 axis{0, 0, -1};  // Of the cone in which it emits, if it does; of any length above 0.
 
     bool operator==(const Sphere&) const = default;
 };
@@ -309,6 +337,7 @@ struct Shape {
     std::shared_ptr<const Origin> origin{};  // None: a mesh that the object's transform alone places, or
                                              // another geometry, of an object that no transform places.
     bool visible = true;                     // If false, the geometry is a mesh without triangles.
+    Beam beam{};                             // Where its emission goes.
 };
 
 // Radiance from infinitely far away, as a latitude-longitude map [W/(m^2 sr)], row-major from the top. Its
@@ -328,20 +357,12 @@ struct PointLight {
     vec3 intensity{1};  // [W/sr], each >= 0 and finite.
 };
 
-// Between the angles of a spot light; t is linear in the cosine, 0 at the outer angle, 1 at the inner.
-enum class SpotFalloff {
-    square,      // t^2, as glTF's KHR_lights_punctual recommends.
-    smoothstep,  // t^2 (3 - 2t), as in Cycles.
-};
-
 // Light from a point into a cone.
 struct SpotLight {
     dvec3 position{0};
-    dvec3 direction{0, 0, -1};      // Direction of the axis, of any length above 0.
-    vec3 intensity{1};              // Up to the inner angle [W/sr], each >= 0 and finite.
-    float inner_angle = 0.0f;       // From the axis [rad]; 0 <= inner_angle < outer_angle <= pi / 2.
-    float outer_angle = PI / 4.0f;  // Beyond it, the light is dark.
-    SpotFalloff falloff = SpotFalloff::square;
+    dvec3 direction{0, 0, -1};  // Direction of the axis, of any length above 0.
+    vec3 intensity{1};          // Up to the inner angle [W/sr], each >= 0 and finite.
+    Cone cone{};
 };
 
 // Light from infinitely far away, in a single direction or from a disk there, which rays that leave the scene

@@ -18,6 +18,7 @@ struct Appearance {
     uint32_t material = 0;             // Index into Scene::materials.
     std::optional<Emission> emission;  // None: the shape does not emit.
     bool states_emission = false;      // Otherwise the emission is the material's.
+    Beam beam{};                       // Where it goes.
 };
 
 struct MeshPart {
@@ -66,8 +67,11 @@ class SceneBuilder {
     // Adds a finished geometry in world space.
     template <class Geometry>
     void add(const Appearance& appearance, Geometry&& geometry) {
-        push({std::forward<Geometry>(geometry), appearance.material, appearance.emission,
-              appearance.states_emission});
+        push({.geometry = std::forward<Geometry>(geometry),
+              .material = appearance.material,
+              .emission = appearance.emission,
+              .states_emission = appearance.states_emission,
+              .beam = appearance.beam});
     }
     // Adds the parts of a mesh, each as a mesh with one instance. Completes their normals, and leaves out
     // flat triangles with a warning; adds tangents where the material needs them. Throws Error if no

@@ -20,8 +20,7 @@ const PointLight POINT{.position = dvec3(0.25, 0.5, 2), .intensity = vec3(3, 2, 
 const SpotLight SPOT{.position = dvec3(-0.5, 0.25, 3),
                      .direction = dvec3(0.5, -0.25, -2),
                      .intensity = vec3(4, 5, 6),
-                     .inner_angle = float(INNER),
-                     .outer_angle = float(OUTER)};
+                     .cone = {.inner_angle = float(INNER), .outer_angle = float(OUTER)}};
 const DirectionalLight SUN{.direction = dvec3(0.5, 0.25, -1), .irradiance = vec3(0.5f, 0.75f, 1)};
 
 // Lights without a surface above and below a square in the plane z = 0, |x|, |y| <= 1, which emits to both

@@ -167,11 +167,12 @@ Records filled(Fields& fields) {
                   .specular = fields.f3(),
                   .parameter = fields.f()};
     r.medium = {.absorption = fields.f3(), .ior = fields.f(), .scattering = fields.f3(), .g = fields.f()};
-    r.light = {.kind = fields.u(),
+    r.light = {.kind = fields.keep(21u),
                .p = fields.f3(),
                .e1 = fields.f3(),
                .e2 = fields.f3(),
                .radiance = fields.f3(),
+               .spread = std::bit_cast<float>(fields.keep(floatBitsToUint(0x1p-9f))),
                .two_sided = fields.keep(1u),
                .pdf_area = fields.f(),
                .pmf = fields.f(),

@@ -97,7 +97,7 @@ void add_suns(Path path, inout Estimate estimate) {
 
 // The radiance that light s.light emits at s.
 vec3 surface_le(Interaction s) {
-    return area_light_le(light_at(s.light), s.front) * light_texture(s.light, s.attributes);
+    return area_light_le(light_at(s.light), s.front, dot(s.wo, s.n), s.wo) * light_texture(s.light, s.attributes);
 }
 
 // Adds the emission of light s.light, which the path's ray hit at s, at that `t`.

@@ -4,12 +4,13 @@
 
 #include "base/ray.glsl"
 #include "base/warp.glsl"
+#include "light/beam.glsl"
 #include "light/sample.glsl"
 #include "shared/light.h"
 
-// Radiance that leaves a light on its front or back side.
-vec3 area_light_le(LightRecord l, bool front) {
-    return front || l.two_sided != 0u ? l.radiance : vec3(0.0);
+// Radiance that leaves a light on its front or back side in the unit direction w, which has that cosine to the normal.
+vec3 area_light_le(LightRecord l, bool front, float cosine, vec3 w) {
+    return front || l.two_sided != 0u ? l.radiance * beam_falloff(l, cosine, w) : vec3(0.0);
 }
 
 // Density [1/sr] with which area_light_sample_li finds the point at that squared distance [m^2] whose normal has the
@@ -27,7 +28,7 @@ LightSample area_light_sample_at(LightRecord l, vec3 p_lit, vec3 p, vec3 n) {
     float inv_distance = inversesqrt(distance_squared);
     s.wi = to_light * inv_distance;
     float cos_light = -dot(s.wi, n);
-    s.Li = area_light_le(l, cos_light > 0.0);
+    s.Li = area_light_le(l, cos_light > 0.0, cos_light, -s.wi);
     if (cos_light < 0.0) n = -n;
     s.pdf = distance_squared > 0.0 ? area_light_pdf_li(l, distance_squared, cos_light) : 0.0;
     s.shadow = to_light + light_end_error(l.error, distance_squared * inv_distance) * n;

@@ -14,7 +14,7 @@
 
 // The attributes of light i at surface coordinates b; on a sphere, at the unit normal n.
 Attributes light_attributes(uint i, LightRecord l, vec2 b, vec3 n) {
-    AttributePlace place = AttributePlace(scene_light_textures(i).primitive, false, b, is_light(l, LIGHT_SPHERE), n);
+    AttributePlace place = AttributePlace(scene_light_textures(i).primitive, false, b, is_sphere(l), n);
     if (is_light(l, LIGHT_PARALLELOGRAM)) {
         // Its triangles are a b c and a c d.
         place.second = b.y > b.x;
@@ -42,7 +42,7 @@ Attributes light_sample_attributes(LightSample s, LitPoint lit) {
 // one.
 float light_sample_cosine(LightSample s, LitPoint lit) {
     LightRecord l = light_seen(s.light, s.lamp, lit);
-    vec3 n = is_light(l, LIGHT_SPHERE) ? lit.p + s.shadow - l.p : cross(l.e1, l.e2);
+    vec3 n = is_sphere(l) ? lit.p + s.shadow - l.p : cross(l.e1, l.e2);
     return abs(dot(s.wi, normalize(n)));
 }
 
@@ -62,7 +62,7 @@ LightSample light_sample_li(LitPoint lit, uvec3 u) {
     LightSample s;
     if (is_light(l, LIGHT_ENVIRONMENT)) {
         s = environment_light_sample_li(u.xy);
-    } else if (is_light(l, LIGHT_SPHERE)) {
+    } else if (is_sphere(l)) {
         s = sphere_light_sample_li(l, lit.p, unit_float(u.xy));
     } else if (is_light(l, LIGHT_POINT)) {
         s = point_light_sample_li(l, lit.p);
@@ -91,8 +91,8 @@ LightSample light_sample_li(LitPoint lit, uvec3 u) {
 float light_pdf_li(uint i, uint lamp, LitPoint lit, float distance_squared, float cos_light, bool front) {
     LightRecord l = light_at(i);
     if (is_lamp(lamp)) l.pdf_area /= scene_lamp(lamp).area;
-    float pdf = is_light(l, LIGHT_SPHERE) ? sphere_light_pdf_li(l, lit.p, distance_squared, cos_light, front)
-                                          : area_light_pdf_li(l, distance_squared, cos_light);
+    float pdf = is_sphere(l) ? sphere_light_pdf_li(l, lit.p, distance_squared, cos_light, front)
+                             : area_light_pdf_li(l, distance_squared, cos_light);
     return light_pmf(i, lamp, lit) * pdf;
 }
 

@@ -12,6 +12,11 @@ bool is_light(LightRecord l, const uint kind) {
     return (LIGHTS & ~(1u << kind)) == 0u || l.kind == kind;
 }
 
+// True if the light is a sphere.
+bool is_sphere(LightRecord l) {
+    return is_light(l, LIGHT_SPHERE) || is_light(l, LIGHT_BEAM);
+}
+
 // True if the light has a surface, which rays may hit.
 bool light_has_surface(LightRecord l) {
     return !is_light(l, LIGHT_ENVIRONMENT) && !is_light(l, LIGHT_POINT) && !is_light(l, LIGHT_SPOT) &&
@@ -28,7 +33,7 @@ vec3 light_middle(LightRecord l) {
 // How far it reaches from there, roughly; 0 for a point.
 float light_size(LightRecord l) {
     if (is_light(l, LIGHT_POINT) || is_light(l, LIGHT_SPOT)) return 0.0;
-    if (is_light(l, LIGHT_SPHERE)) return l.e1.x;
+    if (is_sphere(l)) return l.e1.x;
     return (is_light(l, LIGHT_DISK) ? 1.0 : 0.5) * sqrt(max(dot(l.e1, l.e1), dot(l.e2, l.e2)));
 }
 

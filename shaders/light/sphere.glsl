@@ -34,7 +34,6 @@ LightSample sphere_light_sample_li(LightRecord l, vec3 p_lit, vec2 u) {
     Frame frame = frame_from_z(to_center * inversesqrt(distance_squared));
     LightSample s;
     s.wi = frame_to_world(frame, w);
-    s.Li = l.radiance;
     s.pdf = warp_cone_pdf(cap);
     s.delta = false;
     // The normal where wi first hits the sphere, without a difference of two points that are far away.
@@ -43,6 +42,7 @@ LightSample sphere_light_sample_li(LightRecord l, vec3 p_lit, vec2 u) {
     float half_chord = sqrt(max(0.0, square(radius) - distance_squared * sin2_theta));
     float t = distance * w.z - half_chord;
     vec3 n = frame_to_world(frame, vec3(t * w.xy, -distance * sin2_theta - half_chord * w.z) / radius);
+    s.Li = area_light_le(l, true, dot(s.wi, n), -s.wi);
     s.shadow = to_center + (radius + light_end_error(l.error, distance)) * n;
     s.t_max = LIGHT_T_MAX;
     return s;

@@ -39,7 +39,7 @@ void main() {
         light = met.light;
         if (light != NO_LIGHT) {
             pdf = light_pdf_li(light, met.lamp, lit, square(hit.t), dot(met.wo, met.n), met.front);
-            L = area_light_le(scene_light(light), met.front);
+            L = area_light_le(scene_light(light), met.front, dot(met.wo, met.n), met.wo);
         }
     }
     put(light);

@@ -85,6 +85,7 @@ void put_light(LightRecord l) {
     put(l.e1);
     put(l.e2);
     put(l.radiance);
+    put(l.spread);
     put(l.two_sided);
     put(l.pdf_area);
     put(l.pmf);

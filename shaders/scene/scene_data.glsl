@@ -142,10 +142,15 @@ MediumRecord scene_medium(uint i) {
     return medium_unpack(a, b);
 }
 
+// Whether some light has a spread other than 0.
+bool lights_spread() {
+    return (LIGHTS & 1u << LIGHT_SPREAD) != 0u;
+}
+
 LightRecord scene_light(uint i) {
     uvec4 a, b, c, d;
     READ_4(LIGHTS, LIGHTS, i * LIGHT_WORDS, a, b, c, d);
-    return light_unpack(a, b, c, d);
+    return light_unpack(a, b, c, d, lights_spread());
 }
 
 // The lamp at that place in the table of lights.

@@ -2,7 +2,7 @@
 // environment (1 word), and of the entries of tables that choose (two to a word).
 //
 //   LightRecord                   EnvironmentTexel                 AliasEntry
-//     0: p.xyz, kind                0: radiance.rgb, pdf             0: entry 2i: threshold, alias;
+//     0: p.xyz, kind | spread       0: radiance.rgb, pdf             0: entry 2i: threshold, alias;
 //     1: e1.xyz, error |                                                entry 2i + 1: threshold, alias
 //     2: e2.xyz, pmf                                               CdfEntry
 //     3: radiance.rgb, pdf_area                                      0: entry 2i: last_word, range;
@@ -44,6 +44,14 @@ const uint LIGHT_SUN = 9u;  // A disk infinitely far away, around the unit direc
 
 const uint LIGHT_LAMP = 8u;  // An instance of a mesh that emits: a LampRecord.
 
+// A sphere that emits in a cone. Centre p, radius e1.x, axis (e1.y, e1.z, e2.z) of unit length. In a direction of which
+// 1 - cos of the angle to the axis is h, its radiance has the factor t^2 with t = saturate((e2.x - h) |e2.y|), or
+// smoothstep of the same number if e2.y is below 0.
+const uint LIGHT_BEAM = 10u;
+
+const uint LIGHT_KINDS = 31u;   // The bits of a record's word that hold the kind; the others are those of its spread.
+const uint LIGHT_SPREAD = 31u;  // No kind: that bit of LIGHTS is set if some light has a spread other than 0.
+
 // An emitter. The front of a flat one is the side that cross(e1, e2) points to, that of a sphere is outside.
 // No ray hits points, spots and directional lights; rays that leave the scene hit suns. In the frame of the scene, or
 // in the space of a lamp's mesh.
@@ -53,8 +61,10 @@ struct LightRecord {
     vec3 e1;
     vec3 e2;         // Of a spot: 1 - cos of its outer angle, one over the range of cosines in which it falls off, and
                      // 0 if by the square, 1 if by smoothstep.
-    vec3 radiance;   // [W/(m^2 sr)], constant over the surface and its directions; of a point or spot light
-                     // its intensity [W/sr], of a directional one the irradiance across it [W/m^2].
+    vec3 radiance;   // [W/(m^2 sr)], constant over the surface; of a point or spot light its intensity [W/sr], of a
+                     // directional one the irradiance across it [W/m^2].
+    float spread;    // At the angle a to the normal, the radiance of a surface has the factor
+                     // max(0, 1 - spread tan(a)); >= 0. Its lowest bits, LIGHT_KINDS, are 0.
     uint two_sided;  // 1: emits from the back as well.
     float pdf_area;  // Density of a point on it, chosen uniformly by area [1/m^2]; 0 if it has no surface.
     float pmf;       // Probability of choosing the light among all.
@@ -119,8 +129,9 @@ struct CdfEntry {
 #ifdef __cplusplus
 
 inline std::array<uvec4, LIGHT_WORDS> pack(const LightRecord& l) {
-    return {word(l.p, l.kind), word(l.e1, floatBitsToUint(l.error) | l.two_sided << 31),
-            word(l.e2, floatBitsToUint(l.pmf)), word(l.radiance, floatBitsToUint(l.pdf_area))};
+    return {word(l.p, l.kind | (floatBitsToUint(l.spread) & ~LIGHT_KINDS)),
+            word(l.e1, floatBitsToUint(l.error) | l.two_sided << 31), word(l.e2, floatBitsToUint(l.pmf)),
+            word(l.radiance, floatBitsToUint(l.pdf_area))};
 }
 
 inline std::array<uvec4, LIGHT_WORDS> pack(const LampRecord& l) {
@@ -148,10 +159,12 @@ inline std::array<uvec4, CDF_WORDS> pack(const CdfEntry& even, const CdfEntry& o
 }  // namespace candela
 #else
 
-LightRecord light_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
+// spread: whether some light may have a spread other than 0.
+LightRecord light_unpack(uvec4 a, uvec4 b, uvec4 c, uvec4 d, bool spread) {
     LightRecord l;
     l.p = uintBitsToFloat(a.xyz);
-    l.kind = a.w;
+    l.kind = spread ? a.w & LIGHT_KINDS : a.w;
+    l.spread = spread ? uintBitsToFloat(a.w & ~LIGHT_KINDS) : 0.0;
     l.e1 = uintBitsToFloat(b.xyz);
     l.two_sided = b.w >> 31u;
     l.error = uintBitsToFloat(b.w & 0x7FFFFFFFu);

@@ -51,7 +51,7 @@ class LightRobustnessTest : public LightTest {
                 scene.lights = {{"", PointLight{dvec3(p), intensity}}};
                 break;
             case 5:
-                scene.lights = {{"", SpotLight{dvec3(p), dvec3(e1), intensity, 0.999f * angle, angle}}};
+                scene.lights = {{"", SpotLight{dvec3(p), dvec3(e1), intensity, {0.999f * angle, angle}}}};
                 break;
             default:
                 add_shape(scene, Sphere{dvec3(p), 1.0}, 0);

@@ -9,6 +9,7 @@ AREA = "shaders/light/area.glsl"
 SPHERE = "shaders/light/sphere.glsl"
 POINT = "shaders/light/point.glsl"
 SPOT = "shaders/light/spot.glsl"
+BEAM = "shaders/light/beam.glsl"
 DIRECTIONAL = "shaders/light/directional.glsl"
 SKY = "shaders/light/environment.glsl"
 PHONG = "shaders/bsdf/phong.glsl"
@@ -58,6 +59,7 @@ FLATTEN = "host/gpu_scene/flatten.cpp"
 LIGHT_TREE = "shaders/light/tree.glsl"
 LIGHT_GROUPS = "host/gpu_scene/light_groups.cpp"
 PUNCTUAL_LIGHTS = "host/gpu_scene/punctual_lights.cpp"
+BEAMS = "host/gpu_scene/beam.cpp"
 MATERIAL_ARRAYS = "host/gpu_scene/material_arrays.cpp"
 GEOMETRY_ARRAYS = "host/gpu_scene/geometry_arrays.cpp"
 INSTANCING = "host/gpu_scene/instancing.cpp"
@@ -75,6 +77,7 @@ LIGHTS = ("*Light*:Environment*:Alias*",
           "DirectLight*:RoundLight*Above*:EnvironmentLight*Texel*:*Reference*/small_sphere_light")
 TREES = ("LightTree*:LightChoice*", "EstimatorTest*HoweverLights*:ManyLight*", "LightTree*:TextureMean*")
 PUNCTUAL = ("PunctualLight*:LightRobust*", "PunctualLight*:Sun*:Orthographic*:ScaleTest*Mean*")
+BEAMED = ("RecordsTest*", "BeamTest*:FormFactorTest*", "Flatten.ABeam*")
 TERMINATOR = ("Interaction*", "Terminator*")
 CAMERAS = ("WarpTest*", "PanoramaTest*:PixelFilterTest*:ClampTest*")
 SAMPLES = ("Sampler*:Math*", "AdaptiveTest*:Furnace*:*Lens*:*Blur*:Aov*:*Reference*/depth_of_field")
@@ -383,12 +386,12 @@ GROUPS = [
          "l.radiance * inv_distance * inv_distance", "l.radiance * inv_distance"),
         ("a surface on which a point lies hides it", POINT, "s.t_max = LIGHT_T_MAX;", "s.t_max = FLOAT_MAX;"),
         ("points weighted as if rays could hit them", POINT, "s.delta = true;", "s.delta = false;"),
-        ("a spot's edge falls off linearly", SPOT, "return t * t * ", "return t * "),
-        ("every spot falls off as smoothstep", SPOT, "l.e2.z * (2.0", "(2.0"),
-        ("a spot shines everywhere", SPOT, "s.Li *= spot_light_falloff(l, -s.wi);", ""),
-        ("a spot shines backwards", SPOT, "(l, -s.wi)", "(l, s.wi)"),
-        ("a spot's angles swapped in its choice", PUNCTUAL_LIGHTS, "inner + (outer - inner) / (smooth ? 2.0 : 3.0)",
-         "outer - (outer - inner) / 3.0"),
+        ("a spot's edge falls off linearly", BEAM, "return t * t * ", "return t * "),
+        ("every spot falls off as smoothstep", BEAM, "cone.z * (2.0", "(2.0"),
+        ("a spot shines everywhere", SPOT, "s.Li *= cone_falloff(l.e1, l.e2, -s.wi);", ""),
+        ("a spot shines backwards", SPOT, "l.e2, -s.wi)", "l.e2, s.wi)"),
+        ("a cone's angles swapped in its choice", BEAMS, "inner + (outer - inner) * between",
+         "outer - (outer - inner) * between"),
         ("directional light from where it goes", DIRECTIONAL, "s.wi = l.e1;", "s.wi = -l.e1;"),
         ("nothing far away hides directional light", DIRECTIONAL,
          "s.delta = true;\n    s.shadow = s.wi;\n    s.t_max = FLOAT_MAX;",
@@ -405,6 +408,13 @@ GROUPS = [
          "dvec3(intensity) / (frame_.unit * frame_.unit)", "dvec3(intensity)"),
         ("parallel rays from one point", CAMERA, "Ray(camera.position + s.x * camera.right - s.y * camera.up, camera.forward)",
          "Ray(camera.position, camera.forward)"),
+    ]),
+    (BEAMED, [
+        ("a beam chosen as if it shone everywhere", BEAMS, "return fraction;", "return 1.0;"),
+        ("a spread linear in the sine", BEAM, "/ max(abs(cosine), GRAZING)", ""),
+        ("a cone's axis mirrored", BEAM, "vec3(l.e1.yz, l.e2.z)", "vec3(l.e1.yz, -l.e2.z)"),
+        ("only light samples know beams", PATH, "area_light_le(light_at(s.light), s.front, dot(s.wo, s.n), s.wo)",
+         "area_light_le(light_at(s.light), s.front, 1.0, vec3(light_at(s.light).e1.yz, light_at(s.light).e2.z))"),
     ]),
     (CAMERAS, [
         ("an equirectangular picture mirrored", CAMERA, "fract(0.5 * s.x)", "fract(-0.5 * s.x)"),

@@ -38,8 +38,7 @@ TEST_F(EstimatorTest, AgreeHoweverLightsAreChosen) {
     scene.lights.push_back({"", SpotLight{.position = {-0.5, 1.5, 0.5},
                                           .direction = {0, -1, 0},
                                           .intensity = vec3(1, 2, 1),
-                                          .inner_angle = 0.2f,
-                                          .outer_angle = 0.6f}});
+                                          .cone = {.inner_angle = 0.2f, .outer_angle = 0.6f}}});
     scene.lights.push_back({"", DirectionalLight{.direction = {0.2, -0.3, -1}, .irradiance = vec3(0.5f)}});
     scene.lights.push_back({"", DirectionalLight{.direction = {1, -1, 0.1}, .irradiance = vec3(0, 0, 1)}});
     scene.environment = Environment{.size = {2, 1}, .radiance = {vec3(0.2f), vec3(1, 0.5f, 0.1f)}};

@@ -9,7 +9,7 @@ namespace {
 
 // Lamps of a folded sheet over a floor, turned, of several sizes, every other one mirrored: five glow in the
 // colours of an image under a coat, four from both sides, and three only at the front, which is turned to the
-// floor.
+// floor, in a beam.
 Scene lamps() {
     Scene scene = scene_with_camera(dvec3(0, 3, 7), dvec3(0, 0.8, 0), 0.9f);
     const uint32_t grey = add_diffuse(scene, vec3(0.6f));
@@ -37,7 +37,8 @@ Scene lamps() {
         if (i < 5) emission = {{vec3(4), image}, false};
         scene.shapes.push_back({.geometry = MeshInstance{0, transform},
                                 .material = i < 5 ? coated : grey,
-                                .emission = emission});
+                                .emission = emission,
+                                .beam = {.spread = i < 9 ? PI : 2.0f}});
     }
     return scene;
 }

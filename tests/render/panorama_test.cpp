@@ -165,18 +165,18 @@ TEST_F(PanoramaTest, CapsOfTheSkyCoverTheirShareOfThePicture) {
 // Neither the sky nor a surface, and nothing that hides a background. Pixels across the edge have a part of
 // it, all others 1 or 0.
 TEST_F(PanoramaTest, NothingIsOutsideOfAFisheyesCircle) {
-    constexpr uint32_t SIZE = 32;
+    constexpr uint32_t WIDTH = 32;
     const auto expect_circle = [&](const Scene& scene, Backdrop backdrop, bool covers) {
-        RenderSettings settings = settings_for(SIZE, SIZE);
+        RenderSettings settings = settings_for(WIDTH, WIDTH);
         settings.backdrop = backdrop;
         settings.aovs = true;
         const Image picture = make_image(
             render(scene, settings, 16),
             {.albedo = true, .normal = true, .transmission = backdrop == Backdrop::transmitted}, {});
-        for (uint32_t i = 0; i < SIZE * SIZE; ++i) {
+        for (uint32_t i = 0; i < WIDTH * WIDTH; ++i) {
             const double r =
-                std::hypot(i % SIZE + 0.5 - SIZE / 2.0, i / SIZE + 0.5 - SIZE / 2.0) / (SIZE / 2.0);
-            const double across = std::sqrt(0.5) / (SIZE / 2.0);
+                std::hypot(i % WIDTH + 0.5 - WIDTH / 2.0, i / WIDTH + 0.5 - WIDTH / 2.0) / (WIDTH / 2.0);
+            const double across = std::sqrt(0.5) / (WIDTH / 2.0);
             const float alpha = picture.find("A")->values[i], light = plane(picture, "", 0)[i];
             if (r > 1.0 + across || !covers) {
                 ASSERT_EQ(alpha, 0.0f) << i;

@@ -58,21 +58,20 @@ TEST_F(PunctualLightTest, ASpotFallsOffBetweenItsAngles) {
         const SpotLight light{.position = position,
                               .direction = dvec3(3.0 * std::sin(angle), -3.0 * std::cos(angle), 0),
                               .intensity = INTENSITY,
-                              .inner_angle = float(INNER),
-                              .outer_angle = float(OUTER)};
+                              .cone = {.inner_angle = float(INNER), .outer_angle = float(OUTER)}};
         const double attenuation = std::min(std::cos(angle) * scale + offset, 1.0);
         const double square = attenuation * attenuation;
         expect_irradiance(floor_under(light), square * point_irradiance(position));
         SpotLight smooth = light;
-        smooth.falloff = SpotFalloff::smoothstep;
+        smooth.cone.falloff = SpotFalloff::smoothstep;
         expect_irradiance(floor_under(smooth),
                           square * (3.0 - 2.0 * attenuation) * point_irradiance(position));
     }
     for (const double angle : {0.61, 3.0}) {
         const dvec3 direction(std::sin(angle), -std::cos(angle), 0);
-        expect_black(floor_under(SpotLight{position, direction, INTENSITY, float(INNER), float(OUTER)}));
-        expect_black(floor_under(
-            SpotLight{position, direction, INTENSITY, float(INNER), float(OUTER), SpotFalloff::smoothstep}));
+        expect_black(floor_under(SpotLight{position, direction, INTENSITY, {float(INNER), float(OUTER)}}));
+        expect_black(floor_under(SpotLight{
+            position, direction, INTENSITY, {float(INNER), float(OUTER), SpotFalloff::smoothstep}}));
     }
 }
 
@@ -83,7 +82,7 @@ TEST_F(PunctualLightTest, ASpotMayHaveAHardEdge) {
     for (const float from_axis : {0.49f, 0.51f}) {
         const dvec3 direction(std::sin(double(from_axis)), -std::cos(double(from_axis)), 0);
         const Scene scene =
-            floor_under(SpotLight{position, direction, INTENSITY, std::nextafter(ANGLE, 0.0f), ANGLE});
+            floor_under(SpotLight{position, direction, INTENSITY, {std::nextafter(ANGLE, 0.0f), ANGLE}});
         if (from_axis < ANGLE) {
             expect_irradiance(scene, point_irradiance(position));
         } else {
@@ -110,7 +109,7 @@ TEST_F(PunctualLightTest, DimAndBrightLightsAddUp) {
     scene.lights.push_back({"", SpotLight{.position = above,
                                           .direction = dvec3(0, -1, 0),
                                           .intensity = INTENSITY,
-                                          .outer_angle = PI / 2}});
+                                          .cone = {.outer_angle = PI / 2}}});
     const glm::dvec3 irradiance = 0.01 * point_irradiance(dim) + 2.0 * point_irradiance(bright) +
                                   0.6e-3 * glm::dvec3(INTENSITY) + point_irradiance(above);
     for (const Estimator estimator : {Estimator::light, Estimator::mis})
@@ -154,7 +153,7 @@ TEST_F(PunctualLightTest, LightSamplesAndBothTogetherAgree) {
     add_shape(scene, Sphere{dvec3(0.6, 1.6, 0.3), 0.2}, add_diffuse(scene, vec3(0)), Emission{vec3(2, 1, 1)});
     scene.environment = Environment{.size = {2, 1}, .radiance = {vec3(0.1f), vec3(0.1f, 0.2f, 0.3f)}};
     scene.lights = {{"", PointLight{dvec3(-0.5, 1.4, 0.5), vec3(0.4f, 0.3f, 0.2f)}},
-                    {"", SpotLight{dvec3(0.2, 1.7, 0.8), dvec3(-0.1, -1, -0.3), vec3(1), 0.3f, 0.5f}},
+                    {"", SpotLight{dvec3(0.2, 1.7, 0.8), dvec3(-0.1, -1, -0.3), vec3(1), {0.3f, 0.5f}}},
                     {"", DirectionalLight{dvec3(-1, -2, -0.5), vec3(0.3f, 0.3f, 0.4f)}}};
     expect_same_expectation(image(scene, EstimatorTest::settings(Estimator::light, 2), 256),
                             image(scene, EstimatorTest::settings(Estimator::mis, 1), 256));

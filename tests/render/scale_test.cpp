@@ -79,8 +79,10 @@ Scene room(const Place& place) {
               black, Emission{vec3(2), true});
     add_shape(scene, wave(place), white);
     scene.lights = {{"", PointLight{place.point({0.8, 0.6, 0.9}), vec3(float(0.2 * s * s))}},
-                    {"", SpotLight{place.point({0.5, 0.9, 1.2}), place.vector({-0.2, -0.8, -0.7}),
-                                   vec3(float(0.5 * s * s)), 0.2f, 0.4f}},
+                    {"", SpotLight{place.point({0.5, 0.9, 1.2}),
+                                   place.vector({-0.2, -0.8, -0.7}),
+                                   vec3(float(0.5 * s * s)),
+                                   {0.2f, 0.4f}}},
                     {"", DirectionalLight{place.vector({0.3, -0.3, -1}), vec3(0.3f, 0.2f, 0.1f)}}};
     Camera camera;
     camera.position = place.point({0.5, 0.5, 2.2});

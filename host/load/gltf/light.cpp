@@ -44,17 +44,17 @@ Node lights_of(const File& file, const Node& reference) {
     return *lights;
 }
 
-SpotLight read_cone(File& file, const Node& light) {
+Cone read_cone(File& file, const Node& light) {
     constexpr float MIN_EDGE = 1e-4f;  // [rad]: between the angles, so that the edge has a width.
-    SpotLight spot;
-    const auto cone = light.find("spot");
-    const float inner = cone ? number_of(file, *cone, "innerConeAngle", 0.0f, HALF_PI, 0.0f) : 0.0f;
-    const float outer = cone ? number_of(file, *cone, "outerConeAngle", 0.0f, HALF_PI, PI / 4) : PI / 4;
+    const auto spot = light.find("spot");
+    const float inner = spot ? number_of(file, *spot, "innerConeAngle", 0.0f, HALF_PI, 0.0f) : 0.0f;
+    const float outer = spot ? number_of(file, *spot, "outerConeAngle", 0.0f, HALF_PI, PI / 4) : PI / 4;
     if (inner > outer)
-        file.warn(*cone, "the inner angle of a spot is greater than the outer one, and is treated as equal");
-    spot.outer_angle = std::max(outer, 2.0f * MIN_EDGE);
-    spot.inner_angle = std::min(inner, spot.outer_angle - MIN_EDGE);
-    return spot;
+        file.warn(*spot, "the inner angle of a spot is greater than the outer one, and is treated as equal");
+    Cone cone;
+    cone.outer_angle = std::max(outer, 2.0f * MIN_EDGE);
+    cone.inner_angle = std::min(inner, cone.outer_angle - MIN_EDGE);
+    return cone;
 }
 
 }  // namespace
@@ -94,11 +94,7 @@ Light read_light(File& file, const Node& reference, const glm::dmat4& world, Lig
         result.model =
             DirectionalLight{direction, vec3(illuminance_factor(units) * intensity * dvec3(color))};
     } else if (type == "spot") {
-        SpotLight spot = read_cone(file, light);
-        spot.position = position;
-        spot.direction = direction;
-        spot.intensity = power;
-        result.model = spot;
+        result.model = SpotLight{position, direction, power, read_cone(file, light)};
     } else if (type != "point") {
         type_node.fail_expected(R"("point", "spot" or "directional")");
     }

@@ -1,4 +1,4 @@
-// Lights without a surface: point, spot and directional.
+// Lights without a surface: point, spot and directional; and the cones in which spots and spheres emit.
 #include <algorithm>
 #include <cmath>
 
@@ -8,12 +8,6 @@
 
 namespace candela {
 namespace {
-
-dvec3 direction_of(const Node& node) {
-    const dvec3 direction = node.vector();
-    if (direction == dvec3(0.0)) node.fail_expected("a direction, not zero");
-    return direction;
-}
 
 PointLight read_point(const Node& node) {
     node.allow_only({"type"}, keys_of({"light", "point"}));
@@ -35,25 +29,11 @@ dvec3 spot_direction(const Node& node, dvec3 position) {
 
 SpotLight read_spot(const Node& node) {
     node.allow_only({"type"}, keys_of({"light", "spot"}));
-    constexpr double WIDEST = 90.0;
     SpotLight light;
     light.position = node.require("position").vector();
     light.direction = spot_direction(node, light.position);
     light.intensity = vec3(node.require("intensity").rgb());
-    const auto inner = node.find("inner_angle");
-    const auto outer = node.find("outer_angle");
-    const double outer_degrees = outer ? outer->number() : glm::degrees(double(light.outer_angle));
-    if (!(outer_degrees > 0.0 && outer_degrees <= WIDEST))
-        outer->fail_expected("an angle above 0 and of at most 90 degrees");
-    light.outer_angle = float(glm::radians(outer_degrees));
-    if (inner) {
-        const double degrees = inner->non_negative();
-        light.inner_angle = float(glm::radians(degrees));
-        if (!(degrees < outer_degrees && light.inner_angle < light.outer_angle))
-            inner->fail("inner_angle must be below outer_angle, which is " + number_text(outer_degrees, 6) +
-                        " degrees");
-    }
-    if (const auto falloff = node.find("falloff")) light.falloff = falloff->choice(FALLOFF_NAMES);
+    light.cone = read_cone(node);
     return light;
 }
 
@@ -70,6 +50,32 @@ DirectionalLight read_directional(const Node& node) {
 }
 
 }  // namespace
+
+dvec3 direction_of(const Node& node) {
+    const dvec3 direction = node.vector();
+    if (direction == dvec3(0.0)) node.fail_expected("a direction, not zero");
+    return direction;
+}
+
+Cone read_cone(const Node& node) {
+    constexpr double WIDEST = 90.0;
+    Cone cone;
+    const auto inner = node.find("inner_angle");
+    const auto outer = node.find("outer_angle");
+    const double outer_degrees = outer ? outer->number() : glm::degrees(double(cone.outer_angle));
+    if (!(outer_degrees > 0.0 && outer_degrees <= WIDEST))
+        outer->fail_expected("an angle above 0 and of at most 90 degrees");
+    cone.outer_angle = float(glm::radians(outer_degrees));
+    if (inner) {
+        const double degrees = inner->non_negative();
+        cone.inner_angle = float(glm::radians(degrees));
+        if (!(degrees < outer_degrees && cone.inner_angle < cone.outer_angle))
+            inner->fail("inner_angle must be below outer_angle, which is " + number_text(outer_degrees, 6) +
+                        " degrees");
+    }
+    if (const auto falloff = node.find("falloff")) cone.falloff = falloff->choice(FALLOFF_NAMES);
+    return cone;
+}
 
 std::vector<Light> read_lights(const Node& node, Scene& scene) {
     using Model = decltype(Light::model);

@@ -56,11 +56,14 @@ void read_obj_with_materials(const Node& node, ShapeList& shapes) {
         part.mesh.groups = {};  // All of it is one object.
         std::optional<Emission>& emission = part.appearance.emission;
         if (emission) emission->two_sided = both_sides;
+        part.appearance.beam.spread = ShapeList::spread_of(node);
         emits = emits || emission;
     }
     if (two_sided && !emits) {
         two_sided->fail("two_sided says where emission leaves, but no material of the file emits (Ke)");
     }
+    if (const auto spread = node.find("spread"); spread && !emits)
+        spread->fail("spread says where emission leaves, but no material of the file emits (Ke)");
     shapes.add_mesh(node.place(), transform, std::move(obj.parts));
 }
 

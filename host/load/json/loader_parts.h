@@ -47,6 +47,12 @@ MaterialModel read_principled(const Node& node, const ImageFolder& images);
 MaterialModel read_rough_conductor(const Node& node, const ImageFolder& images);
 MaterialModel read_rough_dielectric(const Node& node, const ImageFolder& images);
 
+// A direction of any length but 0.
+dvec3 direction_of(const Node& node);
+
+// Reads the keys of a cone that an object has.
+Cone read_cone(const Node& node);
+
 // Reads the list of lights without a surface, in its order. scene.warnings gets what is odd.
 std::vector<Light> read_lights(const Node& node, Scene& scene);
 

@@ -44,20 +44,26 @@ void check_breadth(const Node& node, const Disk& disk) {
 
 void read_sphere(const Node& node, ShapeList& shapes) {
     node.allow_only({"type"}, keys_of({"sphere", "shape"}));
-    const Appearance appearance = shapes.appearance_of(node);
+    Appearance appearance = shapes.appearance_of(node);
+    Sphere own{center_of(node), radius_of(node)};
+    if (const auto cone = node.find("cone")) {
+        cone->allow_only({}, keys_of({"cone"}));
+        own.axis = direction_of(cone->require("direction"));
+        appearance.beam.cone = read_cone(*cone);
+    }
     const Transform transform = ShapeList::transform_of(node);
     const std::optional<double> scale = transform.uniform_scale();
     if (!scale) {
         node.require("transform")
             .fail("a sphere may only be moved, turned, mirrored and scaled evenly; use a mesh instead");
     }
-    const dvec3 center = transform.point(center_of(node));
-    const double radius = *scale * radius_of(node);
+    const dvec3 center = transform.point(own.center);
+    const double radius = *scale * own.radius;
     if (radius < FLOAT_MIN) {
         node.fail("the transform makes the sphere too small for 32-bit floats; use greater factors");
     }
     check_reach(node, center, dvec3(radius));
-    shapes.add_placed_by(appearance, Sphere{center_of(node), radius_of(node)}, transform);
+    shapes.add_placed_by(appearance, own, transform);
 }
 
 void read_disk(const Node& node, ShapeList& shapes) {

@@ -49,6 +49,7 @@ void read_instance(const Node& node, const ObjectMap& objects, ShapeList& shapes
         shape.material = appearance.material;
         shape.emission = appearance.emission;
         shape.states_emission = appearance.states_emission;
+        shape.beam = appearance.beam;
         const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
         if (instance != nullptr && (node.find("material") || node.find("emission")))
             shapes.complete_mesh(node.place(), appearance, instance->mesh);

@@ -2,7 +2,9 @@
 #include "load/json/shape_list.h"
 
 #include <utility>
+#include <variant>
 
+#include "load/json/keys.h"
 #include "scene/catchers.h"
 #include "scene/materials.h"
 #include "scene/names.h"
@@ -28,13 +30,19 @@ Appearance ShapeList::appearance_of(const Node& node) {
     }
     Appearance appearance{0, emission_of(node), node.find("emission").has_value()};
     appearance.material = material ? index_of(*material) : black();
-    if (!appearance.states_emission)
-        appearance.emission = material_emission(scene().materials[appearance.material]);
+    const Material& its_material = scene().materials[appearance.material];
+    if (!appearance.states_emission) appearance.emission = material_emission(its_material);
+    appearance.beam.spread = spread_of(node);
+    const auto spread = node.find("spread");
+    if (spread && !appearance.states_emission &&
+        !std::holds_alternative<PrincipledMaterial>(its_material.model))
+        spread->fail("spread says where emission leaves; it needs \"emission\"");
     return appearance;
 }
 
 Appearance ShapeList::appearance_of(const Node& node, const Shape& shape) {
-    Appearance result{shape.material, shape.emission, shape.states_emission};
+    Appearance result{shape.material, shape.emission, shape.states_emission, shape.beam};
+    if (node.find("spread")) result.beam.spread = spread_of(node);
     if (const auto material = node.find("material")) {
         result.material = index_of(*material);
         if (!result.states_emission) result.emission = material_emission(scene().materials[result.material]);
@@ -58,6 +66,11 @@ std::optional<Emission> ShapeList::emission_of(const Node& node) {
     const Textured<vec3> radiance = read_radiance(*emission, {folder_, scene()});
     if (radiance.factor == vec3(0.0f)) return std::nullopt;
     return Emission{radiance, both_sides};
+}
+
+float ShapeList::spread_of(const Node& node) {
+    const auto spread = node.find("spread");
+    return spread ? glm::radians(read_number(*spread, scene_key("shape", "spread"))) : PI;
 }
 
 void ShapeList::make_catchers(const Node& node, size_t first) {

@@ -36,6 +36,8 @@ class ShapeList : public SceneBuilder {
     Appearance appearance_of(const Node& node, const Shape& shape);
     // The emission of a shape's node; none if it is absent or zero. Throws Error for two_sided without it.
     std::optional<Emission> emission_of(const Node& node);
+    // The angle [rad] within which a shape's emission leaves.
+    static float spread_of(const Node& node);
     // Makes the shapes from that one on catchers, as the node of their key says. Throws Error if one emits
     // light.
     void make_catchers(const Node& node, size_t first);

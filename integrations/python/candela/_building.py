@@ -26,16 +26,17 @@ class Building:
 
     def add_mesh(self, vertices: Any, faces: Any, *, name: Optional[str] = None, material: Optional[str] = None,
                  normals: Any = None, uvs: Any = None, uvs1: Any = None, colors: Any = None, emission: Any = None,
-                 two_sided: Optional[bool] = None, transform: Any = None, transforms: Any = None,
-                 shadow_catcher: Optional[str] = None) -> str:
+                 two_sided: Optional[bool] = None, spread: Optional[float] = None, transform: Any = None,
+                 transforms: Any = None, shadow_catcher: Optional[str] = None) -> str:
         """Adds an object of triangles; returns its name. It is read when the scene is next used: until then, its arrays must
         stay as they are.
 
         vertices: (N, 3), in the object's space [m]. faces: (M, 3), indices of vertices, counter-clockwise seen from the
         front. material: a name; by default "default", a grey. normals: (N, 3), for smooth shading. uvs, uvs1: (N, 2), texture
         coordinates, v upwards. colors: (N, 3) or (N, 4), linear, from 0 to 1; for materials with vertex_colors=True.
-        emission: radiance [W/(m² sr)]. transform: (4, 4), from the object's space to the world's. transforms: (K, 4, 4), of
-        as many instances. shadow_catcher: "catch" or "catch-reflections", if only shadows on it are to be seen.
+        emission: radiance [W/(m² sr)]. spread: the full angle around the normal in which it leaves [degrees]. transform:
+        (4, 4), from the object's space to the world's. transforms: (K, 4, 4), of as many instances. shadow_catcher: "catch"
+        or "catch-reflections", if only shadows on it are to be seen.
         """
         if transform is not None and transforms is not None:
             raise Error("give either transform or transforms", "usage", 2)
@@ -43,9 +44,9 @@ class Building:
             draft = self._drafted()
             chosen = draft.free_name(name, "mesh")
             draft.meshes[chosen] = {"vertices": vertices, "faces": faces, "normals": normals, "uvs": uvs, "uvs1": uvs1,
-                                    "colors": colors, "emission": emission, "two_sided": two_sided, "transform": transform,
-                                    "transforms": transforms, "material": self._material_for(material, emission),
-                                    "shadow_catcher": shadow_catcher}
+                                    "colors": colors, "emission": emission, "two_sided": two_sided, "spread": spread,
+                                    "transform": transform, "transforms": transforms,
+                                    "material": self._material_for(material, emission), "shadow_catcher": shadow_catcher}
             return chosen
 
     def _material_for(self, material: Optional[str], emission: Any) -> Optional[str]:

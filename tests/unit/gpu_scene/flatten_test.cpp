@@ -76,6 +76,57 @@ TEST(Flatten, ADiskIsOnePrimitiveAndOneLight) {
     EXPECT_NEAR(lights.powers[0], 12.0 * M_PI, 2e-5);
 }
 
+// The mean of a function of the angle to an axis over all directions, or over the projected solid angle of a
+// hemisphere.
+template <class F>
+double mean_over_angles(double end, F weight) {
+    constexpr int STEPS = 200000;
+    double sum = 0.0;
+    for (int i = 0; i < STEPS; ++i)
+        sum += weight(end * (i + 0.5) / STEPS);
+    return sum * end / STEPS;
+}
+
+// The power of a light in a beam is that of one to all sides, times the mean of the beam's factor.
+TEST(Flatten, ABeamHasAPartOfThePower) {
+    const auto power_of = [](const Geometry& geometry, const Beam& beam) {
+        std::vector<Shape> shapes{shape(geometry, 0, Emission{.radiance = vec3(1)})};
+        const double whole = lights_of(shapes).lights.powers[0];
+        shapes[0].beam = beam;
+        const PoweredLights lights = lights_of(shapes).lights;
+        EXPECT_EQ(lights.records[0].kind == LIGHT_BEAM, beam.cone.has_value());
+        EXPECT_EQ(lights.records[0].spread > 0.0f, beam.spread < PI);
+        return lights.powers[0] / whole;
+    };
+    for (const double spread : {3.0, 1.0, 0.03, 0.01}) {
+        SCOPED_TRACE(spread);
+        const double mean = mean_over_angles(0.5 * spread, [&](double a) {
+            return 2.0 * std::sin(a) * std::cos(a) * (1.0 - std::tan(a) / std::tan(0.5 * spread));
+        });
+        EXPECT_NEAR(power_of(ELLIPSE, {.spread = float(spread)}) / mean, 1.0, 1e-5);  // The record's bits.
+    }
+    for (const SpotFalloff falloff : {SpotFalloff::square, SpotFalloff::smoothstep}) {
+        const double inner = std::cos(0.4), outer = std::cos(0.9);
+        const double mean = mean_over_angles(0.9, [&](double a) {
+            const double t = std::min((std::cos(a) - outer) / (inner - outer), 1.0);
+            return 0.5 * std::sin(a) * t * t * (falloff == SpotFalloff::square ? 1.0 : 3.0 - 2.0 * t);
+        });
+        EXPECT_NEAR(power_of(BALL, {.cone = Cone{0.4f, 0.9f, falloff}}) / mean, 1.0, 1e-6);
+    }
+}
+
+// Kernels contain beams only where a light has one.
+TEST(Flatten, OnlyBeamsArePresentAsBeams) {
+    Scene scene = scene_of(
+        {shape(BALL, 0, Emission{.radiance = vec3(1)}), shape(ELLIPSE, 0, Emission{.radiance = vec3(1)})});
+    EXPECT_EQ(build_gpu_scene(scene).lights_present, 1u << LIGHT_SPHERE | 1u << LIGHT_DISK);
+    scene.shapes[0].beam.cone = Cone{};
+    EXPECT_EQ(build_gpu_scene(scene).lights_present, 1u << LIGHT_BEAM | 1u << LIGHT_DISK);
+    scene.shapes[1].beam.spread = 1.0f;
+    EXPECT_EQ(build_gpu_scene(scene).lights_present,
+              1u << LIGHT_BEAM | 1u << LIGHT_DISK | 1u << LIGHT_SPREAD);
+}
+
 TEST(Flatten, BlackShapesAreNoLights) {
     const Emission black{.radiance = vec3(0), .two_sided = true};
     const Disk without_area{.center = dvec3(0), .e1 = dvec3(1, 0, 0), .e2 = dvec3(2, 0, 0)};

@@ -20,11 +20,12 @@ inline vec3 floats(uvec4 word) {
 
 inline LightRecord light(const GpuScene& gpu, uint32_t i) {
     const uvec4* w = &gpu.arrays[ARRAY_LIGHTS][i * LIGHT_WORDS];
-    return {.kind = w[0].w,
+    return {.kind = w[0].w & LIGHT_KINDS,
             .p = floats(w[0]),
             .e1 = floats(w[1]),
             .e2 = floats(w[2]),
             .radiance = floats(w[3]),
+            .spread = std::bit_cast<float>(w[0].w & ~LIGHT_KINDS),
             .two_sided = w[1].w >> 31,
             .pdf_area = std::bit_cast<float>(w[3].w),
             .pmf = std::bit_cast<float>(w[2].w),

@@ -32,8 +32,7 @@ Scene scene_of_lights() {
         {"lamp", SpotLight{.position = dvec3(-1, 0, 2),
                            .direction = dvec3(0, 4, -3),
                            .intensity = vec3(3),
-                           .inner_angle = float(INNER),
-                           .outer_angle = float(OUTER)}},
+                           .cone = {.inner_angle = float(INNER), .outer_angle = float(OUTER)}}},
     };
     return scene;
 }
@@ -67,7 +66,7 @@ TEST(PunctualLights, AreChosenByTheirPower) {
 TEST(PunctualLights, ASpotThatFallsOffSmoothlyHasMorePower) {
     Scene scene = scene_of_lights();
     scene.lights.erase(scene.lights.begin());
-    std::get<SpotLight>(scene.lights[1].model).falloff = SpotFalloff::smoothstep;
+    std::get<SpotLight>(scene.lights[1].model).cone.falloff = SpotFalloff::smoothstep;
     const double spot = 3.0 * 2.0 * (1.0 - 0.5 * (std::cos(INNER) + std::cos(OUTER)));
     const double total = 5.0 + 4.0 * 2.0 * 0.7152 + spot;
     const GpuScene gpu = build_gpu_scene(scene, SceneFrame{});
@@ -143,7 +142,8 @@ TEST(PunctualLights, ASpotMayBeAsNarrowAndHardAsFloatsCanSay) {
         {0.0f, 1e-30f}, {1e-12f, 1.0000001e-12f}, {0.5f, std::nextafter(0.5f, 1.0f)}, {0.5f, 0.5f}};
     for (const auto& [inner, outer] : cones) {
         Scene scene = scene_of_shapes({{.geometry = SQUARE, .material = 0, .emission = {}}});
-        scene.lights = {{"", PointLight{}}, {"", SpotLight{.inner_angle = inner, .outer_angle = outer}}};
+        scene.lights = {{"", PointLight{}},
+                        {"", SpotLight{.cone = {.inner_angle = inner, .outer_angle = outer}}}};
         const GpuScene gpu = build_gpu_scene(scene);
         for (uint32_t i = 0; i < gpu.light_count; ++i) {
             const LightRecord l = light(gpu, i);

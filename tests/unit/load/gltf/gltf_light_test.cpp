@@ -150,11 +150,11 @@ TEST_F(GltfLight, ReadsEachKind) {
     EXPECT_EQ(spot.position, dvec3(1, 2, 3));
     EXPECT_LE(distance(spot.direction, dvec3(-1, 0, 0)), 1e-6);
     EXPECT_EQ(spot.intensity, vec3(3));
-    EXPECT_EQ(spot.inner_angle, 0.25f);
-    EXPECT_EQ(spot.outer_angle, 0.5f);
+    EXPECT_EQ(spot.cone.inner_angle, 0.25f);
+    EXPECT_EQ(spot.cone.outer_angle, 0.5f);
     const auto plain = read<SpotLight>({{"type", "spot"}, {"spot", Json::object()}});
-    EXPECT_EQ(plain.inner_angle, 0.0f);
-    EXPECT_EQ(plain.outer_angle, float(std::acos(-1.0) / 4));
+    EXPECT_EQ(plain.cone.inner_angle, 0.0f);
+    EXPECT_EQ(plain.cone.outer_angle, float(std::acos(-1.0) / 4));
     const auto sun =
         read<DirectionalLight>({{"type", "directional"}, {"color", {1, 0.5, 0}}, {"intensity", 4}});
     EXPECT_LE(distance(sun.direction, dvec3(-1, 0, 0)), 1e-6);
@@ -222,8 +222,8 @@ TEST_F(GltfLight, NotesWhatIsOdd) {
     for (const Json& cone : {Json{{"innerConeAngle", 0.25}, {"outerConeAngle", 0.25}},
                              Json{{"innerConeAngle", 0}, {"outerConeAngle", 0}}}) {
         const auto spot = read<SpotLight>({{"type", "spot"}, {"spot", cone}});
-        EXPECT_LT(spot.inner_angle, spot.outer_angle);
-        EXPECT_NEAR(spot.outer_angle, cone["outerConeAngle"].get<double>(), 2.1e-4);
+        EXPECT_LT(spot.cone.inner_angle, spot.cone.outer_angle);
+        EXPECT_NEAR(spot.cone.outer_angle, cone["outerConeAngle"].get<double>(), 2.1e-4);
     }
 }
 

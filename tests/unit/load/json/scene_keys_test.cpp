@@ -63,10 +63,10 @@ TEST(SceneKeys, DefaultsAreThoseOfTheScene) {
     EXPECT_EQ(stated("texture", "filter"), name_of(texture.filter, FILTER_NAMES));
     EXPECT_EQ(stated("texture", "wrap"), name_of(texture.wrap_u, WRAP_NAMES));
     EXPECT_EQ(stated("texture", "uv_set"), std::to_string(texture.uv_set));
-    const SpotLight spot;
-    EXPECT_EQ(stated("spot", "inner_angle"), text_of(glm::degrees(spot.inner_angle)));
-    EXPECT_EQ(stated("spot", "outer_angle"), text_of(glm::degrees(spot.outer_angle)));
-    EXPECT_EQ(stated("spot", "falloff"), name_of(spot.falloff, FALLOFF_NAMES));
+    const Cone cone;
+    EXPECT_EQ(stated("spot", "inner_angle"), text_of(glm::degrees(cone.inner_angle)));
+    EXPECT_EQ(stated("spot", "outer_angle"), text_of(glm::degrees(cone.outer_angle)));
+    EXPECT_EQ(stated("spot", "falloff"), name_of(cone.falloff, FALLOFF_NAMES));
     EXPECT_EQ(stated("directional", "angle"), text_of(DirectionalLight{}.angle));
     const Environment sky;
     EXPECT_EQ(stated("environment", "rotation"), text_of(sky.rotation));

@@ -46,9 +46,9 @@ TEST(SceneLights, AreReadInTheirOrder) {
     EXPECT_EQ(wide.position, dvec3(1, 2, 3));
     EXPECT_EQ(normalize(wide.direction), dvec3(0, -1, 0));
     EXPECT_EQ(wide.intensity, vec3(7));
-    EXPECT_FLOAT_EQ(wide.inner_angle, PI / 18);
-    EXPECT_FLOAT_EQ(wide.outer_angle, PI / 2);
-    EXPECT_EQ(wide.falloff, SpotFalloff::smoothstep);
+    EXPECT_FLOAT_EQ(wide.cone.inner_angle, PI / 18);
+    EXPECT_FLOAT_EQ(wide.cone.outer_angle, PI / 2);
+    EXPECT_EQ(wide.cone.falloff, SpotFalloff::smoothstep);
 
     EXPECT_EQ(scene.lights[2].name, "bulb");
     const auto& bulb = std::get<PointLight>(scene.lights[2].model);
@@ -57,9 +57,9 @@ TEST(SceneLights, AreReadInTheirOrder) {
 
     const auto& plain = std::get<SpotLight>(scene.lights[3].model);
     EXPECT_EQ(plain.direction, dvec3(3, 0, 0));
-    EXPECT_EQ(plain.inner_angle, 0.0f);
-    EXPECT_FLOAT_EQ(plain.outer_angle, PI / 4);
-    EXPECT_EQ(plain.falloff, SpotFalloff::square);
+    EXPECT_EQ(plain.cone.inner_angle, 0.0f);
+    EXPECT_FLOAT_EQ(plain.cone.outer_angle, PI / 4);
+    EXPECT_EQ(plain.cone.falloff, SpotFalloff::square);
 }
 
 TEST(SceneLights, AreEnoughToLightAScene) {

@@ -71,6 +71,50 @@ TEST(SceneShapes, ReadSpheres) {
     EXPECT_TRUE(scene.shapes[0].emission->two_sided);
 }
 
+TEST(SceneShapes, ReadCones) {
+    SceneFolder folder;
+    const Scene scene =
+        folder.load(scene_of(R"({"type": "sphere", "emission": 2, "cone": {"direction": [2, 0, 0],
+        "inner_angle": 18, "outer_angle": 36, "falloff": "smoothstep"}, "transform": [{"rotate": 90, "axis": [0, 1, 0]}]},
+        {"type": "sphere", "emission": 2, "cone": {"direction": [0, 1, 0]}}, {"type": "sphere", "emission": 2})"));
+    // A quarter turn about y takes x to -z.
+    EXPECT_LT(length(std::get<Sphere>(scene.shapes[0].geometry).axis - dvec3(0, 0, -2)), 1e-15);
+    ASSERT_TRUE(scene.shapes[0].beam.cone.has_value());
+    EXPECT_FLOAT_EQ(scene.shapes[0].beam.cone->inner_angle, PI / 10);
+    EXPECT_FLOAT_EQ(scene.shapes[0].beam.cone->outer_angle, PI / 5);
+    EXPECT_EQ(scene.shapes[0].beam.cone->falloff, SpotFalloff::smoothstep);
+    EXPECT_EQ(scene.shapes[1].beam.cone, Cone{});
+    EXPECT_EQ(scene.shapes[2].beam, Beam{});
+
+    const auto sphere = [](const std::string& cone) {
+        return scene_of(R"({"type": "sphere", "emission": 2, "cone": )" + cone + "}");
+    };
+    folder.expect_error(sphere("@{}"), "the key \"direction\" is missing here; add it");
+    folder.expect_error(sphere(R"({"direction": @[0, 0, 0]})"),
+                        "\"direction\": expected a direction, not zero, found [0, 0, 0]");
+    folder.expect_error(sphere(R"({"direction": [0, 0, 1], "outer_angle": @91})"),
+                        "\"outer_angle\": expected an angle above 0 and of at most 90 degrees, found 91");
+    folder.expect_error(sphere(R"({"direction": [0, 0, 1], @"angle": 91})"),
+                        "unknown key \"angle\" (known: direction, inner_angle, outer_angle, falloff)");
+}
+
+TEST(SceneShapes, ReadSpreads) {
+    SceneFolder folder;
+    const Scene scene =
+        folder.load(scene_of(R"({"type": "disk", "normal": [0, 1, 0], "emission": 1, "spread": 60},
+        {"type": "disk", "normal": [0, 1, 0], "emission": 1})"));
+    EXPECT_FLOAT_EQ(scene.shapes[0].beam.spread, PI / 3);
+    EXPECT_EQ(scene.shapes[1].beam.spread, PI);
+    const auto disk = [](const std::string& members) {
+        return scene_of(R"({"type": "disk", "normal": [0, 1, 0], "material": "white", )" + members + "}");
+    };
+    folder.expect_error(disk("\"spread\": @60"), "spread says where emission leaves; it needs \"emission\"");
+    for (const char* outside : {"0", "-60", "181"}) {
+        folder.expect_error(disk("\"emission\": 1, \"spread\": @" + std::string(outside)),
+                            "\"spread\": expected a number from 0.01 to 180, found " + std::string(outside));
+    }
+}
+
 TEST(SceneShapes, CheckSpheres) {
     SceneFolder folder;
     const auto sphere = [](const std::string& members) {
@@ -83,7 +127,7 @@ TEST(SceneShapes, CheckSpheres) {
     folder.expect_error(sphere("\"center\": @[0, 0]"), "\"center\": expected three numbers, found [0, 0]");
     folder.expect_error(sphere("@\"centre\": [0, 0, 0]"),
                         "unknown key \"centre\" (did you mean \"center\"? known: type, center, radius, "
-                        "name, material, emission, two_sided, shadow_catcher, transform)");
+                        "cone, name, material, emission, two_sided, spread, shadow_catcher, transform)");
     const std::string uneven =
         "a sphere may only be moved, turned, mirrored and scaled evenly; use a mesh instead";
     folder.expect_error(sphere(R"("transform": @[{"scale": [1, 1, 2]}])"), uneven);

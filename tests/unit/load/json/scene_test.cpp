@@ -155,8 +155,8 @@ TEST(Scene, SaysWhichKeysItKnows) {
         "fisheye_fov, lens)");
     folder.expect_error(
         scene_of(R"({"type": "box", "min": [0, 0, 0], "max": [1, 1, 1], @"colour": "white"})"),
-        "unknown key \"colour\" (known: type, min, max, name, material, emission, two_sided, shadow_catcher, "
-        "transform)");
+        "unknown key \"colour\" (known: type, min, max, name, material, emission, two_sided, spread, "
+        "shadow_catcher, transform)");
     folder.expect_error("@{\"shapes\": []}", "the key \"cameras\" is missing here; add it");
     folder.expect_error("@[]", "the scene: expected an object { ... }, found []");
 }
