@@ -18,9 +18,9 @@ def add_light(scene, light, matrix, name, glow, notices):
     if light.type == "SUN":
         _add_sun(scene, light, matrix, power, name)
     elif light.type == "AREA":
-        _add_area(scene, light, matrix, power, name, glow, place, notices)
+        _add_area(scene, light, matrix, power, name, glow)
     elif light.type == "SPOT":
-        _add_spot(scene, light, matrix, power, name, place, notices)
+        _add_spot(scene, light, matrix, power, name, glow)
     else:
         _add_point(scene, light, matrix, power, name, glow)
 
@@ -53,27 +53,42 @@ def _unknown(node, place, notices):
 
 
 def _add_point(scene, light, matrix, power, name, glow):
-    position = to_candela(matrix.translation)
-    radius = light.shadow_soft_size
-    if radius > 0:
-        radiance = power / (4 * math.pi ** 2 * radius ** 2)
-        transform = numpy.diag([radius, radius, radius, 1.0])
-        transform[:3, 3] = position
-        scene.add_shape("sphere", name=name, radius=1.0, transform=transform, material=_glowing(scene, glow, radiance))
-    else:
-        scene.add_light("point", name, position=position, intensity=power / (4 * math.pi))
-
-
-def _add_spot(scene, light, matrix, power, name, place, notices):
     if light.shadow_soft_size > 0:
-        notices.add(place, "candela has no soft spots; its shadows are hard")
+        _add_sphere(scene, light, matrix, power, name, glow)
+    else:
+        scene.add_light("point", name, position=to_candela(matrix.translation), intensity=power / (4 * math.pi))
+
+
+def _add_spot(scene, light, matrix, power, name, glow):
     half = min(light.spot_size / 2, math.pi / 2)
     # Where the cosine is this, the light begins to fall off.
     inner = math.acos(math.cos(half) + (1 - math.cos(half)) * light.spot_blend)
-    direction = -numpy.array(matrix.col[2][:3])
-    scene.add_light("spot", name, position=to_candela(matrix.translation), direction=to_candela(direction),
-                    intensity=power / (4 * math.pi), outer_angle=math.degrees(half),
-                    inner_angle=min(math.degrees(inner), math.degrees(half) * 0.9999), falloff="smoothstep")
+    cone = {"outer_angle": math.degrees(half), "inner_angle": min(math.degrees(inner), math.degrees(half) * 0.9999),
+            "falloff": "smoothstep"}
+    if light.shadow_soft_size > 0:
+        _add_sphere(scene, light, matrix, power, name, glow, cone={"direction": [0, 0, -1], **cone})
+    else:
+        direction = -numpy.array(matrix.col[2][:3])
+        scene.add_light("spot", name, position=to_candela(matrix.translation), direction=to_candela(direction),
+                        intensity=power / (4 * math.pi), **cone)
+
+
+def _add_sphere(scene, light, matrix, power, name, glow, **keys):
+    """A light with a size, which the object's scale does not change."""
+    radius = light.shadow_soft_size
+    transform = numpy.eye(4)
+    transform[:3, :3] = _turned(to_candela(matrix.col[2][:3]))
+    transform[:3, 3] = to_candela(matrix.translation)
+    radiance = power / (4 * math.pi ** 2 * radius ** 2)
+    scene.add_shape("sphere", name=name, radius=radius, transform=transform, material=_glowing(scene, glow, radiance), **keys)
+
+
+def _turned(z):
+    """(3, 3): a rotation that takes the axis Z to that direction."""
+    z = numpy.array(z) / numpy.linalg.norm(z)
+    x = numpy.cross(numpy.eye(3)[numpy.argmin(numpy.abs(z))], z)
+    x /= numpy.linalg.norm(x)
+    return numpy.column_stack([x, numpy.cross(z, x), z])
 
 
 def _add_sun(scene, light, matrix, power, name):
@@ -82,10 +97,8 @@ def _add_sun(scene, light, matrix, power, name):
                     angle=min(math.degrees(light.angle), 179.9))
 
 
-def _add_area(scene, light, matrix, power, name, glow, place, notices):
+def _add_area(scene, light, matrix, power, name, glow):
     """A rectangle or an ellipse, which shines along its -Z."""
-    if light.spread < math.pi:
-        notices.add(place, "candela has no spread below 180 degrees; it shines to all sides of its front")
     width = light.size
     height = light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
     across, along = (numpy.array(matrix.col[i][:3]) for i in (0, 1))
@@ -94,8 +107,13 @@ def _add_area(scene, light, matrix, power, name, glow, place, notices):
         return
     is_round = light.shape in {"DISK", "ELLIPSE"}
     radiance = power / (math.pi * area * (math.pi / 4 if is_round else 1))
+    half = max(light.spread, math.radians(0.1)) / 2
+    spread = {}
+    if half < math.pi / 2 * 0.9999:
+        spread["spread"] = math.degrees(2 * half)
+        radiance = radiance * math.tan(half) / (math.tan(half) - half)  # All of the power leaves.
     transform = placed(matrix) @ numpy.diag([width, height, 1, 1])
-    keys = {"name": name, "transform": transform, "material": _glowing(scene, glow, radiance)}
+    keys = {"name": name, "transform": transform, "material": _glowing(scene, glow, radiance), **spread}
     if is_round:
         scene.add_shape("disk", normal=[0, 0, -1], radius=0.5, **keys)
     else:

@@ -47,6 +47,25 @@ class BlenderTest(SceneTest):
         add_light("SPOT", location=(0, 0, 2), energy=100, shadow_soft_size=0, spot_size=1.0, spot_blend=0.2)
         self.expect_close(self.floor_below(), 100 / (4 * math.pi) / 4, 0.005)
 
+    def test_a_soft_spot_is_a_sphere(self):
+        spot = add_light("SPOT", location=(0, 0, 2), energy=100, shadow_soft_size=0.3, spot_size=1.0, spot_blend=0.2)
+        spot.scale = (3, 3, 3)  # Which changes neither its size nor its cone.
+        self.expect_close(self.floor_below(1024), 100 / (4 * math.pi) / 4, 0.005)
+
+    def test_a_turned_soft_spot_lights_where_it_points(self):
+        spot = add_light("SPOT", location=(2, 0, 2), target=(2, 0, 0), energy=100, shadow_soft_size=0.1, spot_size=0.4,
+                         spot_blend=0)
+        self.assertEqual(self.floor_below(1024), 0)
+        look(spot, spot.location, (0, 0, 0))
+        self.expect_close(centre(self.render())[1] * math.pi / RHO, 100 / (4 * math.pi) / 8 * math.sqrt(0.5), 0.01)
+
+    def test_all_of_the_power_leaves_in_the_spread(self):
+        # At half of the tangent of the spread's edge, so that half of the radiance is left.
+        edge = math.tan(math.radians(30))
+        add_light("AREA", location=(edge, 0, 2), target=(edge, 0, 0), energy=100, size=0.03, spread=math.radians(60))
+        peak = edge / (edge - math.radians(30))
+        self.expect_close(self.floor_below(1024), 100 / (math.pi * 4) * peak / 2 / (1 + edge ** 2 / 4) ** 2, 0.01)
+
     def test_areas_shine_by_their_shape_and_scale(self):
         # Small ones, 2 m away: irradiance = power / (pi d²).
         for shape, scale in (("SQUARE", 1), ("RECTANGLE", 1), ("DISK", 1), ("ELLIPSE", 1), ("SQUARE", 3)):
