@@ -214,7 +214,8 @@ TEST_F(PunctualLightTest, ALightOnTheSurfaceIsHarmless) {
 }
 
 // Powers of two do not change anything except the choice of lights: the picture has the same digits, as long
-// as the squares of samples are finite.
+// as the squares of samples are finite, and the digits that sums keep apart are no denormal numbers, which
+// some devices flush.
 TEST_F(PunctualLightTest, AnyIntensityMakesTheSamePicture) {
     const auto picture = [&](float factor) {
         Scene scene = floor_under(PointLight{dvec3(0, 2, 0), factor * INTENSITY});
@@ -225,7 +226,7 @@ TEST_F(PunctualLightTest, AnyIntensityMakesTheSamePicture) {
         return image_of(render(scene, settings(Estimator::mis), 16));
     };
     const Image one = picture(1.0f);
-    for (const float factor : {0x1p-100f, 0x1p40f}) {
+    for (const float factor : {0x1p-90f, 0x1p40f}) {
         const Image other = picture(factor);
         for (size_t c = 0; c < 3; ++c) {
             for (size_t i = 0; i < one.pixel_count(); ++i)
