@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
 #include "base/memory_budget.h"
+#include "base/parse_float.h"
 #include "base/text.h"
 #include "os/memory.h"
 
@@ -99,7 +99,7 @@ uint64_t default_memory_limit() {
 
 std::optional<uint64_t> parse_memory_size(const std::string& text) {
     double number = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const auto [end, error] = parse_float(text.data(), text.data() + text.size(), number);
     std::string unit(end, text.data() + text.size());
     if (error != std::errc()) return std::nullopt;
     double factor = 1.0;

@@ -39,7 +39,7 @@ void parallel_for(size_t count, const Step& step) {
     {
         // One step needs no helper, nor to read from the system how many there could be.
         const size_t threads = count < 2 ? 1 : std::min<size_t>(count, std::thread::hardware_concurrency());
-        const std::vector<std::jthread> helpers = start_helpers(std::max<size_t>(threads, 1) - 1, work);
+        const std::vector<JoiningThread> helpers = start_helpers(std::max<size_t>(threads, 1) - 1, work);
         work();
     }
     if (error) std::rethrow_exception(error);

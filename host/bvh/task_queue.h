@@ -4,7 +4,6 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -28,7 +27,7 @@ class TaskQueue {
     // rethrown.
     template <class Work>
     void run(unsigned threads, const Work& work) {
-        std::vector<std::jthread> helpers = start_helpers(threads - 1, [&] { serve(work); });
+        std::vector<JoiningThread> helpers = start_helpers(threads - 1, [&] { serve(work); });
         serve(work);
         helpers.clear();  // Joins.
         if (error_) std::rethrow_exception(error_);

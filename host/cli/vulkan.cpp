@@ -50,7 +50,7 @@ static void check_threads() {
     // Lavapipe's: two pools of a thread per core, each of at most 16, and two threads more.
     const size_t needed = 2 * std::clamp<size_t>(std::thread::hardware_concurrency(), 1, 16) + 2;
     std::latch end(1);
-    const std::vector<std::jthread> threads = start_helpers(needed, [&end] { end.wait(); });
+    const std::vector<JoiningThread> threads = start_helpers(needed, [&end] { end.wait(); });
     end.count_down();
     if (threads.size() < needed) {
         throw Error("cannot use Vulkan: its drivers start up to " + std::to_string(needed) +

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/parse_float.h"
 #include "base/printable.h"
 #include "film/sample_range.h"
 #include "image/image_io.h"
@@ -56,11 +57,20 @@ uint64_t checksum(const Image& header, std::span<const Accumulation> states) {
     return fnv1a64(std::as_bytes(std::span(place)), hash);
 }
 
+std::from_chars_result parse(const char* begin, const char* end, double& number) {
+    return parse_float(begin, end, number);
+}
+
+template <class Integer>
+std::from_chars_result parse(const char* begin, const char* end, Integer& number) {
+    return std::from_chars(begin, end, number);
+}
+
 template <class Number>
 Number number_attribute(const Image& image, const std::string& attribute, const std::string& name) {
     const std::string text = text_attribute(image, attribute, name);
     Number number{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const auto [end, error] = parse(text.data(), text.data() + text.size(), number);
     if (error == std::errc{} && end == text.data() + text.size()) return number;
     throw Error(name + ": the attribute " + attribute + " is \"" + printable(text, MAX_NAME_BYTES) +
                 "\"; give a file that candela render wrote, unchanged");

@@ -2,7 +2,6 @@
 // encoding nor the exposure, and reads zeros where a truncated file ends.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <new>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory_limit.h"
+#include "base/parse_float.h"
 #include "image/image_io.h"
 #include "image/image_io_parts.h"
 
@@ -134,7 +134,7 @@ class HdrReader {
         for (float& factor : factors) {
             while (at != end && *at == ' ')
                 ++at;
-            const auto [rest, error] = std::from_chars(at, end, factor);
+            const auto [rest, error] = parse_float(at, end, factor);
             if (error != std::errc() || !std::isfinite(factor) || factor <= 0.0f) {
                 fail_damaged("its header line \"" + std::string(text) + "\" needs numbers above 0");
             }

@@ -1,11 +1,12 @@
 // Words and numbers, independent of the locale.
 #include "load/text_lines.h"
 
-#include <charconv>
 #include <cmath>
 #include <limits>
+#include <system_error>
 
 #include "base/error.h"
+#include "base/parse_float.h"
 
 namespace candela {
 namespace {
@@ -40,7 +41,7 @@ std::optional<double> parse_number(std::string_view word) {
     if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
     const char* end = word.data() + word.size();
     double value = 0.0;
-    const auto [stop, error] = std::from_chars(word.data(), end, value);
+    const auto [stop, error] = parse_float(word.data(), end, value);
     if (error != std::errc() || stop != end) return std::nullopt;
     return value;
 }

@@ -9,11 +9,12 @@ namespace candela::serve {
 
 using std::chrono::milliseconds;
 
-Output::Output(int file, size_t max)
-    : file_(file), max_(max), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+Output::Output(int file, size_t max) : file_(file), max_(max), thread_([this] { run(); }) {}
 
 Output::~Output() {
-    thread_.request_stop();
+    const std::lock_guard lock(mutex_);
+    stops_ = true;
+    wake_.notify_all();
 }
 
 void Output::send(std::string line) {
@@ -47,8 +48,8 @@ void Output::finish(milliseconds patience) {
 }
 
 // Writes the line, unless the client is gone before its end.
-void Output::write(const std::stop_token& stop, std::string_view line) {
-    while (!line.empty() && !gone_ && !stop.stop_requested()) {
+void Output::write(std::string_view line) {
+    while (!line.empty() && !gone_ && !stops_) {
         const os::StreamStep step = os::write_some(file_, line, LOOK);
         if (step.ended) gone_ = true;
         line.remove_prefix(step.bytes);
@@ -57,18 +58,17 @@ void Output::write(const std::stop_token& stop, std::string_view line) {
     }
 }
 
-void Output::run(const std::stop_token& stop) {
+void Output::run() {
     std::unique_lock lock(mutex_);
-    while (!gone_ && !stop.stop_requested()) {
+    while (!gone_ && !stops_) {
         if (lines_.empty()) {
-            if (!wake_.wait_for(lock, stop, LOOK, [this] { return !lines_.empty(); }) &&
-                !os::has_reader(file_))
-                gone_ = true;
+            const bool woken = wake_.wait_for(lock, LOOK, [this] { return !lines_.empty() || stops_; });
+            if (!woken && !os::has_reader(file_)) gone_ = true;
             continue;
         }
         const std::string& line = lines_.front();  // Others are only added behind it.
         lock.unlock();
-        write(stop, line);
+        write(line);
         lock.lock();
         waiting_ -= lines_.front().size();
         lines_.pop_front();

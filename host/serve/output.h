@@ -9,7 +9,9 @@
 #include <deque>
 #include <mutex>
 #include <string>
-#include <thread>
+#include <string_view>
+
+#include "base/threads.h"
 
 namespace candela::serve {
 
@@ -37,18 +39,19 @@ class Output {
     bool is_given_up() const { return given_up_; }
 
   private:
-    void run(const std::stop_token& stop);
-    void write(const std::stop_token& stop, std::string_view line);
+    void run();
+    void write(std::string_view line);
 
     int file_;
     size_t max_;
     std::mutex mutex_;
-    std::condition_variable_any wake_;
+    std::condition_variable wake_;
     std::deque<std::string> lines_;  // The first is being written.
     size_t waiting_ = 0;             // Their bytes.
     size_t written_ = 0;             // Bytes, since the start.
     std::atomic<bool> gone_ = false, given_up_ = false;
-    std::jthread thread_;  // The last member, since it uses the others.
+    std::atomic<bool> stops_ = false;
+    JoiningThread thread_;  // The last member, since it uses the others.
 };
 
 }  // namespace candela::serve

@@ -2,13 +2,13 @@
 #include "serve/server.h"
 
 #include <array>
-#include <thread>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "base/caught_error.h"
 #include "base/memory_limit.h"
+#include "base/threads.h"
 #include "os/stream.h"
 
 namespace candela::serve {
@@ -158,7 +158,7 @@ void Server::answer(const Waiting& waiting) {
 
 Server::End Server::run() {
     {
-        const std::jthread reader([this] {
+        const JoiningThread reader([this] {
             try {
                 read();
             } catch (...) {  // There is no memory for the bytes of a line.
