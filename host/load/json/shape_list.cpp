@@ -33,10 +33,12 @@ Appearance ShapeList::appearance_of(const Node& node) {
     const Material& its_material = scene().materials[appearance.material];
     if (!appearance.states_emission) appearance.emission = material_emission(its_material);
     appearance.beam.spread = spread_of(node);
-    const auto spread = node.find("spread");
-    if (spread && !appearance.states_emission &&
-        !std::holds_alternative<PrincipledMaterial>(its_material.model))
-        spread->fail("spread says where emission leaves; it needs \"emission\"");
+    if (appearance.states_emission || std::holds_alternative<PrincipledMaterial>(its_material.model))
+        return appearance;
+    for (const std::string key : {"spread", "cone"}) {
+        if (const auto beam = node.find(key))
+            beam->fail(key + " says where emission leaves; it needs \"emission\"");
+    }
     return appearance;
 }
 

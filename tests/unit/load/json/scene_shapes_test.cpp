@@ -89,6 +89,9 @@ TEST(SceneShapes, ReadCones) {
     const auto sphere = [](const std::string& cone) {
         return scene_of(R"({"type": "sphere", "emission": 2, "cone": )" + cone + "}");
     };
+    folder.expect_error(
+        scene_of(R"({"type": "sphere", "material": "white", "cone": @{"direction": [0, 1, 0]}})"),
+        "cone says where emission leaves; it needs \"emission\"");
     folder.expect_error(sphere("@{}"), "the key \"direction\" is missing here; add it");
     folder.expect_error(sphere(R"({"direction": @[0, 0, 0]})"),
                         "\"direction\": expected a direction, not zero, found [0, 0, 0]");
