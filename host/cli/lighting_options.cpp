@@ -64,6 +64,8 @@ void LightingArguments::add_to(CLI::App& app) {
     add_names("--shadow-catcher", catchers.shadows,
               "See only the shadows on surfaces of this material; repeat it for several");
     add_names("--reflection-catcher", catchers.reflections, "The same, with reflections");
+    add_names("--holdout", catchers.holdouts,
+              "See what is behind the picture in place of surfaces of this material; repeat it for several");
 }
 
 }  // namespace candela

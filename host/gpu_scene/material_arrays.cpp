@@ -41,6 +41,8 @@ uint catcher_code(Catcher catcher) {
             return CATCHER_SHADOWS;
         case Catcher::reflections:
             return CATCHER_REFLECTIONS;
+        case Catcher::holdout:
+            return CATCHER_HOLDOUT;
         case Catcher::none:
             break;
     }

@@ -46,6 +46,10 @@ void set_material(Scene& scene, const char* option, const std::string& name, Cat
 
 }  // namespace
 
+bool catches(Catcher catcher) {
+    return catcher == Catcher::shadows || catcher == Catcher::reflections;
+}
+
 void add_ground(Scene& scene, Material material) {
     const DoubleBox box = bounds(scene);
     if (box.is_empty()) return;
@@ -68,10 +72,12 @@ void make_catchers(Scene& scene, const std::string& name, const CatcherOptions& 
         set_material(scene, "--shadow-catcher", material, Catcher::shadows);
     for (const std::string& material : options.reflections)
         set_material(scene, "--reflection-catcher", material, Catcher::reflections);
+    for (const std::string& material : options.holdouts)
+        set_material(scene, "--holdout", material, Catcher::holdout);
     if (options.ground) set_ground(scene, *options.ground);
     for (const Shape& shape : scene.shapes) {
         const Material& material = scene.materials[shape.material];
-        if (material.catcher == Catcher::none || (!shape.emission && !is_unlit(material))) continue;
+        if (!catches(material.catcher) || (!shape.emission && !is_unlit(material))) continue;
         throw Error(name + ": a surface of the material \"" + printable(material.name, MAX_NAME_BYTES) +
                     "\" " + CATCHER_EMITS);
     }

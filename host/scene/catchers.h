@@ -11,6 +11,9 @@
 
 namespace candela {
 
+// Whether such a surface shows shadows.
+bool catches(Catcher catcher);
+
 // What `--ground` adds to a scene; `none`: an ordinary surface.
 inline constexpr Choices<Catcher, 3> GROUND_NAMES{
     {{"show", Catcher::none}, {"catch", Catcher::shadows}, {"catch-reflections", Catcher::reflections}}};
@@ -20,6 +23,7 @@ struct CatcherOptions {
     std::optional<Catcher> ground{};
     std::vector<std::string> shadows{};      // Names of materials.
     std::vector<std::string> reflections{};  // The same; they also reflect.
+    std::vector<std::string> holdouts{};     // The same, for holdouts.
 
     bool operator==(const CatcherOptions&) const = default;
 };
@@ -38,7 +42,7 @@ inline constexpr const char* CATCHER_EMITS =
     "take its "
     "light away";
 
-// Whether some shape of the scene is a catcher.
+// Whether some shape of the scene is a catcher or a holdout.
 bool has_catchers(const Scene& scene);
 
 }  // namespace candela

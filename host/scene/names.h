@@ -46,8 +46,9 @@ inline constexpr Choices<Mapping, 3> MAPPING_NAMES{{{"equirectangular", Mapping:
                                                     {"fisheye", Mapping::fisheye},
                                                     {"equisolid", Mapping::equisolid}}};
 
-inline constexpr Choices<Catcher, 2> CATCHER_NAMES{
-    {{"catch", Catcher::shadows}, {"catch-reflections", Catcher::reflections}}};
+inline constexpr Choices<Catcher, 3> CATCHER_NAMES{{{"catch", Catcher::shadows},
+                                                    {"catch-reflections", Catcher::reflections},
+                                                    {"holdout", Catcher::holdout}}};
 
 inline constexpr Choices<Fresnel, 2> FRESNEL_NAMES{
     {{"schlick", Fresnel::schlick}, {"exact", Fresnel::exact}}};

@@ -209,6 +209,7 @@ enum class Catcher {
     none,
     shadows,
     reflections,  // It also reflects the rest of the scene.
+    holdout,      // Not at all: it sees what is behind the picture.
 };
 
 struct Material {

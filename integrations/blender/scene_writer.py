@@ -24,12 +24,12 @@ _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
 class _Shown:
     """A mesh with its materials, and where it is shown."""
 
-    def __init__(self, key, name, parts, materials, catches):
+    def __init__(self, key, name, parts, materials, catcher):
         self.key = key
         self.name = name
         self.parts = parts
         self.materials = materials
-        self.catches = catches
+        self.catcher = catcher
         self.matrices = []
 
 
@@ -87,7 +87,7 @@ class SceneWriter:
             self.notices.add(f'Object "{thing.name}"', "it is flat along an axis of its own; it is left out")
             return
         slots = tuple(slot.material.original if slot.material else None for slot in thing.material_slots)
-        key = (thing.data.as_pointer(), tuple(uid_of(slot) for slot in slots), thing.is_shadow_catcher)
+        key = (thing.data.as_pointer(), tuple(uid_of(slot) for slot in slots), self._catcher_of(thing))
         if key not in self._shown:
             self._shown[key] = self._read_mesh(thing, instance, slots)
         self._shown[key].matrices.append(matrix)
@@ -95,8 +95,8 @@ class SceneWriter:
     def _read_mesh(self, thing, instance, slots):
         """A mesh that is shown for the first time. Pointers say what is one mesh during a look at the scene, but not beyond."""
         materials = [self._material(slot) for slot in slots] or [self._material(None)]
-        if thing.is_holdout:
-            self.notices.add(f'Object "{thing.name}"', "candela has no holdouts; it is shown")
+        if thing.is_holdout and not self._depsgraph.scene.render.film_transparent:
+            self.notices.add(f'Object "{thing.name}"', "candela has holdouts before a transparent film alone; it is shown")
         hidden = [name for name in _RAYS if not getattr(thing, f"visible_{name}")]
         if hidden:
             self.notices.add(f'Object "{thing.name}"', f"candela hides objects from all rays or none; it is shown to {', '.join(hidden)}")
@@ -113,7 +113,13 @@ class SceneWriter:
                 if thing.type != "MESH":
                     thing.to_mesh_clear()
         parts = self._cache.parts(key, thing.data.as_pointer(), named, sources, read)
-        return _Shown(key, thing.name, parts, materials, thing.is_shadow_catcher)
+        return _Shown(key, thing.name, parts, materials, self._catcher_of(thing))
+
+    def _catcher_of(self, thing):
+        """The key shadow_catcher of an object, or None."""
+        if thing.is_holdout and self._depsgraph.scene.render.film_transparent:
+            return "holdout"
+        return "catch" if thing.is_shadow_catcher else None
 
     def _second_uv(self, mesh, named):
         """The name of the texture coordinates, besides those of the render, that are named by its materials."""
@@ -140,8 +146,8 @@ class SceneWriter:
             placing = {"transform": shown.matrices[0]} if len(shown.matrices) == 1 else \
                 {"transforms": numpy.array(shown.matrices)}
             title = shown.name if number == 0 else f"{shown.name} ({name})"
-            if shown.catches:
-                placing["shadow_catcher"] = "catch"
+            if shown.catcher is not None:
+                placing["shadow_catcher"] = shown.catcher
             name_of_part = self._cache.name("object", (*shown.key, part.slot), title)
             self._scene.add_mesh(**arrays, **placing, material=name, name=name_of_part)
 

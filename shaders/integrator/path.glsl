@@ -283,10 +283,11 @@ bool path_step(inout Path path, inout Estimate estimate, out ShadowRay shadow, H
         estimate.normal = normal_seen(x);
     }
     if (HAS_CATCHERS && !path.alone) {
-        if (path.depth == 0u) {
-            estimate_catch(estimate, path, x);
-        } else {
+        if (path.depth > 0u) {
             estimate_stray(estimate, x);
+        } else if (estimate_catch(estimate, path, x)) {
+            if (seeks_guides(path, estimate)) guides_meet(estimate.guides, vec3(0.0), vec3(0.0), vec3(0.0));
+            return false;
         }
     }
 

@@ -81,11 +81,19 @@ Estimate estimate_begin() {
                     guides_begin());
 }
 
-// Notes that the path's first hit is a catcher, if it is one.
-void estimate_catch(inout Estimate estimate, inout Path path, ShadedSurface x) {
-    if (is_in_medium(x)) return;
-    estimate.catcher = scene_material_textures(x.s.material).catcher;
-    if (estimate.catcher != CATCHER_NONE) path.clear = false;
+// Notes that the path's first hit is a catcher, if it is one. Returns whether it is a holdout, with which the path ends
+// as if nothing were there.
+bool estimate_catch(inout Estimate estimate, inout Path path, ShadedSurface x) {
+    if (is_in_medium(x)) return false;
+    uint catcher = scene_material_textures(x.s.material).catcher;
+    if (catcher == CATCHER_HOLDOUT) {
+        estimate.visible = false;
+        estimate.transmission = 1.0;
+        return true;
+    }
+    estimate.catcher = catcher;
+    if (catcher != CATCHER_NONE) path.clear = false;
+    return false;
 }
 
 // Keeps what the estimate holds as light that has not met the rest of the scene, if the path meets it first at x.

@@ -12,6 +12,7 @@ namespace candela {
 const uint CATCHER_NONE = 0u;
 const uint CATCHER_SHADOWS = 1u;
 const uint CATCHER_REFLECTIONS = 2u;  // It also reflects the rest of the scene.
+const uint CATCHER_HOLDOUT = 3u;      // No catcher: the camera sees what is behind the picture.
 
 #ifdef __cplusplus
 }  // namespace candela

@@ -66,6 +66,18 @@ class BlenderTest(SceneTest):
         peak = edge / (edge - math.radians(30))
         self.expect_close(self.floor_below(1024), 100 / (math.pi * 4) * peak / 2 / (1 + edge ** 2 / 4) ** 2, 0.01)
 
+    def test_a_holdout_is_a_hole_before_a_transparent_film(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        add("plane", matte(), size=100)
+        ball = add("uv_sphere", matte(), radius=1)
+        add_camera()
+        bpy.context.scene.render.film_transparent = True
+        self.assertEqual(self.render()[SIZE // 2, SIZE // 2, 3], 1)
+        ball.is_holdout = True
+        image = self.render()
+        self.assertEqual(image[SIZE // 2, SIZE // 2].tolist(), [0, 0, 0, 0])
+        self.assertEqual(image[0, 0, 3], 1)
+
     def test_areas_shine_by_their_shape_and_scale(self):
         # Small ones, 2 m away: irradiance = power / (pi d²).
         for shape, scale in (("SQUARE", 1), ("RECTANGLE", 1), ("DISK", 1), ("ELLIPSE", 1), ("SQUARE", 3)):

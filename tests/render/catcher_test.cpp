@@ -93,6 +93,50 @@ TEST_F(CatcherTest, ABallTakesItsFormFactorFromAnEvenSky) {
     }
 }
 
+// In place of a holdout, the camera sees what is behind the picture: neither light nor alpha, however alpha
+// is defined. All other pixels have the picture of the scene in which it is seen, with its shadow.
+TEST_F(CatcherTest, AHoldoutIsAHoleInThePicture) {
+    Scene scene = ball_on_floor(Catcher::none);
+    const Scene seen_whole = scene;
+    scene.materials[1].catcher = Catcher::holdout;  // The ball's.
+    for (const Backdrop backdrop : {Backdrop::background, Backdrop::transmitted}) {
+        RenderSettings settings = catching(independent_settings(32, Estimator::mis, 3));
+        settings.backdrop = backdrop;
+        const AovSelection layers{
+            .albedo = true, .transmission = backdrop == Backdrop::transmitted, .catchers = true};
+        const Image image = make_image(render(scene, settings, 16), layers, {});
+        settings.catchers = false;
+        const Image whole = make_image(render(seen_whole, settings, 16),
+                                       {.albedo = true, .transmission = layers.transmission}, {});
+        size_t holes = 0, others = 0;
+        for (size_t i = 0; i < image.pixel_count(); ++i) {
+            const float albedo = plane(whole, "Albedo", 0)[i];
+            if (albedo > 0.79f) {  // All of the pixel is the ball.
+                for (size_t c = 0; c < 3; ++c)
+                    ASSERT_EQ(plane(image, "", c)[i], 0.0f);
+                ASSERT_EQ(at(image, "A", i), 0.0f);
+                ++holes;
+            } else if (albedo == ALBEDO) {
+                for (size_t c = 0; c < 3; ++c)
+                    ASSERT_EQ(plane(image, "", c)[i], plane(whole, "", c)[i]);
+                ASSERT_EQ(at(image, "A", i), at(whole, "A", i));
+                ++others;
+            }
+        }
+        EXPECT_GT(holes, 50u);
+        EXPECT_GT(others, 500u);
+    }
+}
+
+// A holdout belongs to the real place: a catcher shows no shadow of it.
+TEST_F(CatcherTest, HoldoutsShadeNoCatchers) {
+    Scene scene = ball_on_floor(Catcher::shadows);
+    scene.materials[1].catcher = Catcher::holdout;
+    const Image image = caught(scene, 32, 8, 1);
+    for (size_t i = 0; i < image.pixel_count(); ++i)
+        ASSERT_EQ(at(image, "A", i), at(image, FOREGROUND_ALPHA, i));
+}
+
 // Both paths of a sample are then the same, with the same bits.
 TEST_F(CatcherTest, NothingButCatchersLightsAndSkyLeavesNoShadow) {
     for (const Catcher catcher : {Catcher::shadows, Catcher::reflections}) {

@@ -79,7 +79,7 @@ void ShapeList::make_catchers(const Node& node, size_t first) {
     const Catcher catcher = node.choice(CATCHER_NAMES);
     for (size_t i = first; i < scene().shapes.size(); ++i) {
         const Material material = scene().materials[scene().shapes[i].material];
-        if (scene().shapes[i].emission || is_unlit(material))
+        if (catches(catcher) && (scene().shapes[i].emission || is_unlit(material)))
             node.fail(std::string("the shape ") + CATCHER_EMITS);
         const auto [known, is_new] = catchers_.try_emplace({scene().shapes[i].material, catcher});
         if (is_new) {

@@ -49,8 +49,11 @@ TEST_F(CatchersTest, AShapeOfANativeSceneIsOneByItself) {
               scene.materials[scene.shapes[1].material].model);
     EXPECT_TRUE(has_catchers(scene));
     EXPECT_FALSE(has_catchers(folder_.load(balls(""))));
+    const Scene held_out = folder_.load(balls("", R"(, "shadow_catcher": "holdout")"));
+    EXPECT_EQ(catcher_of(held_out, 2), Catcher::holdout);
+    EXPECT_TRUE(held_out.shapes[2].emission.has_value());
     folder_.expect_error(balls(R"(, "shadow_catcher": @"shadows")"),
-                         R"(unknown shadow_catcher "shadows" (known: catch, catch-reflections))");
+                         R"(unknown shadow_catcher "shadows" (known: catch, catch-reflections, holdout))");
     folder_.expect_error(balls("", R"(, "shadow_catcher": @"catch")"),
                          std::string("the shape ") + CATCHER_EMITS);
 }
@@ -61,6 +64,7 @@ TEST_F(CatchersTest, OptionsNameMaterials) {
     EXPECT_EQ(catcher_of(scene, 1), Catcher::shadows);
     EXPECT_EQ(catcher_of(scene, 2), Catcher::none);
     EXPECT_EQ(catcher_of(load({.reflections = {"white"}}), 1), Catcher::reflections);
+    EXPECT_EQ(catcher_of(load({.holdouts = {"white"}}), 1), Catcher::holdout);
     EXPECT_EQ(error({.shadows = {"floor"}}),
               "--shadow-catcher: unknown material \"floor\" (defined: white, lit, toon)");
     EXPECT_EQ(error({.reflections = {"floor"}}),
@@ -78,6 +82,7 @@ TEST_F(CatchersTest, WhatEmitsIsRefused) {
     scene.shapes[0].material = 2;  // Unlit.
     EXPECT_EQ(error_of([&] { make_catchers(scene, "toon.glb", {.shadows = {"toon"}}); }),
               std::string("toon.glb: a surface of the material \"toon\" ") + CATCHER_EMITS);
+    EXPECT_NO_THROW(load({.holdouts = {"lit"}}));  // It gives its light, unseen.
 }
 
 // Views are fitted to what stands on it.
