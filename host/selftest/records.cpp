@@ -100,7 +100,7 @@ struct Item {
 
 // The kernel's result.
 struct Result {
-    std::array<uint, 267> words;
+    std::array<uint, 268> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 267u
+#define RESULT_WORDS 268u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
