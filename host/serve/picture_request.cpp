@@ -10,6 +10,7 @@
 #include "film/id_layers.h"
 #include "film/sample_range.h"
 #include "load/json/loader_parts.h"
+#include "scene/catchers.h"
 #include "scene/names.h"
 
 namespace candela::serve {
@@ -145,6 +146,8 @@ RenderJob read_job(const Node& parameters, const Scene& scene) {
         job.settings.guides = true;
     }
     job.aovs.transmission = settings.backdrop == Backdrop::transmitted;
+    // Before a sky, they are ordinary surfaces.
+    job.aovs.catchers = job.settings.catchers = job.aovs.transmission && has_catchers(scene);
     job.settings.aovs = job.aovs.needs_layers();
     if (job.time_limit) job.settings.pass_growth = EVEN_PASS_GROWTH;
     return job;

@@ -78,6 +78,21 @@ class BlenderTest(SceneTest):
         self.assertEqual(image[SIZE // 2, SIZE // 2].tolist(), [0, 0, 0, 0])
         self.assertEqual(image[0, 0, 3], 1)
 
+    def test_a_shadow_catcher_shows_its_shadow_alone(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        floor = add("plane", matte(), size=100)
+        add("uv_sphere", matte(), radius=1, location=(0, 0, 1))
+        add_camera()
+        bpy.context.scene.render.film_transparent = True
+        floor.is_shadow_catcher = True
+        bpy.context.scene.candela.samples = 64
+        image = self.render()
+        self.assertEqual(image[SIZE // 2, SIZE // 2, 3], 1)
+        self.assertLess(image[0, 0, 3], 0.1)  # Far from the ball.
+        beside = image[SIZE // 2, :, 3]
+        self.assertGreater(beside[(beside > 0.2) & (beside < 0.9)].size, 2)
+        self.assertEqual(image[0, 0, :3].max(), 0)
+
     def test_areas_shine_by_their_shape_and_scale(self):
         # Small ones, 2 m away: irradiance = power / (pi d²).
         for shape, scale in (("SQUARE", 1), ("RECTANGLE", 1), ("DISK", 1), ("ELLIPSE", 1), ("SQUARE", 3)):

@@ -209,6 +209,22 @@ class Scenes(unittest.TestCase):
         self.assertIn("not loaded yet", repr(scene))
         self.same(scene, candela.load(expected))
 
+    def test_catchers_catch_before_nothing(self):
+        floor = 100 * numpy.array([[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]])
+        alphas = []
+        for catcher in (None, "catch", "holdout"):
+            scene = tetrahedron(transform=[[1, 0, 0, 0], [0, 1, 0, 1], [0, 0, 1, 0], [0, 0, 0, 1]])
+            scene.add_camera(candela.Camera((0, 6, 6), (0, 0, 0), 40), "above")
+            scene.add_mesh(floor, [[0, 1, 2], [0, 2, 3]], material="clay", shadow_catcher=catcher)
+            image = scene.render(spp=64, camera="above", transparent=True)
+            self.assertEqual(image.alpha.max(), 1)  # The pot.
+            alphas.append(image.alpha)
+        shown, caught, held_out = alphas
+        self.assertEqual(shown.min(), 1)
+        self.assertLess(caught.min(), 0.2)  # Far from the pot.
+        self.assertTrue((caught >= held_out - 1e-6).all())
+        self.assertGreater(numpy.count_nonzero((caught > 0.2) & (held_out == 0)), 5)  # Its shadow.
+
     def test_a_camera_sees_all_if_nobody_places_one(self):
         scene = candela.Scene(size=(32, 32))
         scene.add_mesh(POINTS + 100, FACES)
