@@ -188,8 +188,8 @@ def places_of(schema):
     places = {"scene": [schema], "film": [schema["properties"]["film"]],
               "integrator": [schema["properties"]["integrator"]], "environment": defs["environment"]["oneOf"],
               "normal_map": [defs["normalMap"]], "bump_map": [defs["bumpMap"]], "opacity": [defs["opacity"]["oneOf"][1]]}
-    places |= {name: [defs[name]] for name in ("camera", "cone", "lens", "texture", "absorption", "scattering", "subsurface", "medium",
-                                               "sky")}
+    places |= {name: [defs[name]] for name in ("camera", "cone", "lens", "texture", "absorption", "scattering", "subsurface",
+                                               "medium", "sky")}
     for family, common in COMMON.items():
         places[family] = [{"properties": {key: defs[name] for key, name in common.items()}}]
         for variant in defs[family]["oneOf"]:

@@ -11,7 +11,7 @@
 
 namespace candela {
 
-// Whether such a surface shows shadows.
+// Whether the camera sees shadows on such a surface, and not the surface.
 bool catches(Catcher catcher);
 
 // What `--ground` adds to a scene; `none`: an ordinary surface.

@@ -87,8 +87,8 @@ TEST_F(BeamTest, ASmallSphereIsASpot) {
     expect_mean(image_of(render(soft, direct(Estimator::mis), samples(256))), expected, 3e-4);
 }
 
-// In a room: a parallelogram, a quad that is none, a glowing image, both sides, a mesh, a coat over a lamp, a
-// sphere near a wall.
+// In a room: a parallelogram with a glowing image, a quad that is none, under a coat, a lamp with two sides,
+// and spheres with a cone and with a spread.
 TEST_F(BeamTest, EstimatorsAgree) {
     Scene scene = open_room();
     const uint32_t grey = 0;
