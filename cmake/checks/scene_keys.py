@@ -16,8 +16,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 KEYS, VALUES = "host/load/json/scene_keys.inc", "host/scene/principled_values.inc"
 SCHEMA, PAGE = "scenes/scene.schema.json", "docs/scene-format.md"
-CONSTANTS = ["host/base/limits.h", "host/scene/scene.h", "host/scene/medium.h", "host/scene/principled.h", "host/scene/sky.h",
-             "host/scene/texture.h"]
+CONSTANTS = ["host/base/limits.h", *(f"host/scene/{name}.h" for name in (
+    "camera", "light", "material", "medium", "principled", "sky", "texture"))]
 NAMES = ["host/scene/names.h", "host/load/json/loader_mesh_files.cpp"]
 
 # The tables of the page, by section: the objects whose keys each lists, or rows that are no key's.
