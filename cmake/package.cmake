@@ -26,7 +26,9 @@ if(WIN32)
 else()
     set_target_properties(candela PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
     # The old kind of run path, which also applies to the libraries that those libraries need.
-    target_link_options(candela PRIVATE LINKER:--disable-new-dtags)
+    if(NOT APPLE)
+        target_link_options(candela PRIVATE LINKER:--disable-new-dtags)
+    endif()
     install(TARGETS candela RUNTIME_DEPENDENCY_SET candela_libraries)
     install(RUNTIME_DEPENDENCY_SET candela_libraries
         PRE_EXCLUDE_REGEXES "^ld-linux" "^linux-vdso" "^lib(c|m|dl|rt|pthread|stdc\\+\\+|gcc_s)\\.so")

@@ -10,6 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "os/posix/kernel.h"
+
 namespace candela::os {
 namespace {
 
@@ -189,7 +191,7 @@ PrivateFolder::PrivateFolder(const fs::path& path, bool make) {
     const int folder = open_file(path, O_DIRECTORY | O_RDONLY | O_NOFOLLOW);
     exists_ = is_private(folder, S_IFDIR);
     folder_ = folder;
-    path_ = "/proc/self/fd/" + std::to_string(folder);
+    path_ = path_of_folder(folder);
 }
 
 PrivateFolder::~PrivateFolder() {

@@ -5,10 +5,6 @@
 
 namespace candela::os {
 
-std::string library_file(const std::string& name, int version) {
-    return "lib" + name + ".so." + std::to_string(version);
-}
-
 Library::Library(const std::filesystem::path& file)
     : handle_(::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE)) {
     if (is_loaded()) return;

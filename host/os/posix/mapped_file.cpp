@@ -2,7 +2,6 @@
 #include "os/mapped_file.h"
 
 #include <array>
-#include <cerrno>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -10,6 +9,8 @@
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "os/posix/kernel.h"
 
 namespace candela::os {
 namespace {
@@ -28,14 +29,6 @@ int make_file(const fs::path& path) {
     }
 }
 
-// Whether the file has the room for good, so that writing to it cannot fail.
-bool reserve(int file, uint64_t size) {
-    int error = EINTR;
-    while (error == EINTR)
-        error = ::posix_fallocate(file, 0, off_t(size));
-    return error == 0;
-}
-
 }  // namespace
 
 const char* const TEMPORARY_FOLDER_VARIABLE = "TMPDIR";
@@ -51,7 +44,7 @@ std::vector<fs::path> mapped_file_folders() {
 std::string random_digits() {
     constexpr char DIGITS[] = "0123456789abcdef";
     std::array<unsigned char, 12> random{};
-    if (::getrandom(random.data(), random.size(), 0) != ssize_t(random.size())) random[0] = 0;
+    if (::getentropy(random.data(), random.size()) != 0) random[0] = 0;
     std::string digits;
     for (const unsigned char byte : random)
         (digits += DIGITS[byte >> 4]) += DIGITS[byte & 15];

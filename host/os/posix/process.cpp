@@ -5,7 +5,6 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <fstream>
 #include <string_view>
 #include <system_error>
 
@@ -15,6 +14,10 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "os/posix/kernel.h"
+
+extern char** environ;  // Which macOS leaves to the program to declare.
 
 namespace candela::os {
 namespace {
@@ -60,16 +63,9 @@ bool may_run(int process) {
 
 std::string computer_since_start() {
     std::array<char, 256> host{};
-    std::string boot;
-    std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), boot);
+    const std::string boot = boot_identity();
     if (boot.empty() || ::gethostname(host.data(), host.size() - 1) != 0) return "";
     return boot + host.data();
-}
-
-std::filesystem::path program_file() {
-    std::error_code unknown;
-    const std::filesystem::path file = std::filesystem::read_symlink("/proc/self/exe", unknown);
-    return unknown ? std::filesystem::path() : file;
 }
 
 ProgramEnd run_program(const ProgramCall& call) {
