@@ -125,7 +125,7 @@ class HttpLimits(HttpCase):
 
     def test_memory(self):
         before = self.server.metrics()
-        self.assert_refused(413, "need at least .* bytes, and the server's --memory-limit allows 200000000",
+        self.assert_refused(413, "need at least .* bytes, and the server's --memory-limit allows 1000000000",
                             self.server.ask("POST", "/render?size=65536x65536", SCENE, MODEL))
         self.assertEqual(self.server.metrics()["candela_scenes_loaded_total"], before["candela_scenes_loaded_total"])
         count = 4000000  # Vertices of 12 bytes: the file fits, and what is made of it does not.

@@ -157,7 +157,7 @@ class HttpCase(unittest.TestCase):
         (root / "below/link.json").symlink_to(root / "secret.json")
         (root / "below/out").symlink_to(root)
         (root / "below/in.json").symlink_to("deep/scene.json")
-        cls.server = Server("--root", str(root / "below"), "--memory-limit", "200M", "--max-body", "64MiB")
+        cls.server = Server("--root", str(root / "below"), "--memory-limit", "1G", "--max-body", "64MiB")
 
     @classmethod
 

@@ -45,7 +45,6 @@ class Handler(BaseHTTPRequestHandler):
         self.rfile = io.BufferedReader(self._timed, CHUNK)
         self._began = time.monotonic()
         self._expects = False
-        self._status = 0
 
     def handle(self) -> None:
         """One request."""
@@ -54,8 +53,6 @@ class Handler(BaseHTTPRequestHandler):
             self.handle_one_request()
         except (Gone, OSError):
             pass  # There is nobody to answer.
-        if self._status:
-            self.server.metrics.answered(self._status)
 
     def handle_expect_100(self) -> bool:
         """A client that asks whether to send its body is told when it is wanted."""
@@ -205,7 +202,7 @@ class Handler(BaseHTTPRequestHandler):
             self._timed.send(data)
 
     def _head(self, status: int, kind: str, size: int, more: Dict[str, str]) -> None:
-        self._status = int(status)
+        self.server.metrics.answered(int(status))  # Before a client that has the answer can ask.
         self.send_response(status)
         for name, value in {"Content-Type": kind, "Content-Length": str(size), "Connection": "close",
                             "X-Content-Type-Options": "nosniff", **more}.items():
