@@ -1,4 +1,4 @@
-# Sourced by wheel.sh and windows.sh: builds libraries from Debian's sources, in $folder.
+# Sourced by libcxx.sh, wheel.sh and windows.sh: builds libraries from Debian's sources, in $folder.
 # shellcheck shell=sh
 # shellcheck disable=SC2154  # The scripts that source this one set $folder.
 

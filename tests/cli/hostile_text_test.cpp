@@ -52,7 +52,7 @@ class HostileText : public CliTest {
     std::string gltf() const {
         const Json camera = {{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}};
         Json root = {{"asset", {{"version", "2.0"}, {"generator", HARM}, {"copyright", HARM + large_}}},
-                     {"cameras", {camera}},
+                     {"cameras", Json::array({camera})},
                      {"meshes", {{{"primitives", Json::array()}}}},
                      {"nodes", {{{"mesh", 0}}}},
                      {"scenes", {{{"nodes", Json::array()}}}},

@@ -170,11 +170,11 @@ uint32_t add_image_array(const Node& node, Scene& scene) {
                            .type = *type,
                            .texels = {},
                            .gamma = {}};
-    const auto make = [name = name, empty, arrays = scene.arrays] {
+    const auto make = [id = name, empty, arrays = scene.arrays] {
         TexelImage image = empty;
         image.texels.resize(size_t{image.size.x} * image.size.y * image.channels * byte_size(image.type));
-        arrays->read(name, 0, image.texels);
-        if (image.type == TexelType::half) check_halves(name, image.texels);
+        arrays->read(id, 0, image.texels);
+        if (image.type == TexelType::half) check_halves(id, image.texels);
         return image;
     };
     return add_image_file(

@@ -33,15 +33,25 @@ struct alignas(64) Aligned {
     char bytes[64];
 };
 
+// Compilers may leave out memory that nothing sees.
+std::atomic<void*> seen = nullptr;
+
+template <class T = char>
+std::unique_ptr<T[]> take(uint64_t count) {
+    auto memory = std::make_unique<T[]>(count);
+    seen = memory.get();
+    return memory;
+}
+
 TEST(MemoryLimit, CountsWhatIsTakenAndGivenBack) {
     const uint64_t before = memory_in_use();
     {
-        const std::vector<char> one(10 * MEBI);
+        const auto one = take(10 * MEBI);
         EXPECT_GE(memory_in_use(), before + 10 * MEBI);
         EXPECT_LE(memory_in_use(), before + 11 * MEBI);
-        const std::vector<Aligned> aligned(MEBI / 64);
+        const auto aligned = take<Aligned>(MEBI / 64);
         EXPECT_GE(memory_in_use(), before + 11 * MEBI);
-        std::thread([] { EXPECT_NE(std::make_unique<char[]>(MEBI), nullptr); }).join();
+        std::thread([] { EXPECT_NE(take(MEBI), nullptr); }).join();
         const MemoryCharge charge(100 * MEBI);
         EXPECT_GE(memory_in_use(), before + 111 * MEBI);
     }
@@ -51,12 +61,12 @@ TEST(MemoryLimit, CountsWhatIsTakenAndGivenBack) {
 TEST(MemoryLimit, IsRefusedBeforeItIsTaken) {
     const LimitFromHere limit(64 * MEBI);
     const uint64_t before = memory_in_use();
-    EXPECT_NO_THROW(std::make_unique<char[]>(60 * MEBI));
-    EXPECT_THROW(std::make_unique<char[]>(65 * MEBI), LimitReached);
-    EXPECT_THROW(std::make_unique<Aligned[]>(65 * MEBI / 64), LimitReached);
+    EXPECT_NO_THROW(take(60 * MEBI));
+    EXPECT_THROW(take(65 * MEBI), LimitReached);
+    EXPECT_THROW(take<Aligned>(65 * MEBI / 64), LimitReached);
     EXPECT_THROW(MemoryCharge(65 * MEBI), LimitReached);
     // More than any machine has: nothing is touched.
-    EXPECT_THROW(std::make_unique<char[]>(uint64_t(1) << 46), LimitReached);
+    EXPECT_THROW(take(uint64_t(1) << 46), LimitReached);
     EXPECT_LE(memory_in_use(), before + MEBI / 16);
     // In small pieces, too.
     std::vector<std::unique_ptr<char[]>> pieces;
@@ -64,7 +74,7 @@ TEST(MemoryLimit, IsRefusedBeforeItIsTaken) {
     EXPECT_THROW(
         {
             while (pieces.size() < MEBI)
-                pieces.push_back(std::make_unique<char[]>(1000));
+                pieces.push_back(take(1000));
         },
         LimitReached);
     EXPECT_LE(memory_in_use(), memory_limit() + 2 * MEBI);
@@ -72,18 +82,18 @@ TEST(MemoryLimit, IsRefusedBeforeItIsTaken) {
 
 TEST(MemoryLimit, HoldsOnlyWhereItIsAskedFor) {
     set_memory_limit(1);
-    EXPECT_NO_THROW(std::make_unique<char[]>(MEBI));
+    EXPECT_NO_THROW(take(MEBI));
     set_memory_limit(UINT64_MAX);
 }
 
 // A driver's threads beside one that reads a scene must not run out of memory; those that help it may.
 TEST(MemoryLimit, HoldsForAThreadAndItsHelpersAlone) {
     const LimitFromHere limit(MEBI);
-    std::thread([] { EXPECT_NO_THROW(std::make_unique<char[]>(4 * MEBI)); }).join();
+    std::thread([] { EXPECT_NO_THROW(take(4 * MEBI)); }).join();
     std::atomic<int> refused = 0;
     const auto work = [&] {
         try {
-            std::make_unique<char[]>(4 * MEBI);
+            take(4 * MEBI);
         } catch (const LimitReached&) {
             ++refused;
         }
@@ -97,8 +107,8 @@ TEST(MemoryLimit, TheErrorSaysWhatTakesHowMuch) {
     const auto place = [] { return std::string("a.glb#/nodes/3"); };
     try {
         with_memory_for("what the node shows", place, [] {
-            const std::vector<char> one(40 * MEBI);
-            return std::vector<char>(30 * MEBI);
+            const auto one = take(40 * MEBI);
+            return take(30 * MEBI);
         });
         ADD_FAILURE();
     } catch (const Error& error) {

@@ -249,8 +249,8 @@ TEST_F(GltfTexture, MessagesAboutFacesOfACubeNameThem) {
     GltfFile file = textured();
     file.root["images"][0] = {{"uri", "none.png"}};
     file.root["scenes"] = {{{"nodes", {0}}, {"extensions", {{"EXT_lights_image_based", {{"light", 0}}}}}}};
-    const Json light = {{"specularImages", {std::vector<int>(6)}}};
-    file.root["extensions"]["EXT_lights_image_based"]["lights"] = {light};
+    const Json light = {{"specularImages", Json::array({std::vector<int>(6)})}};
+    file.root["extensions"]["EXT_lights_image_based"]["lights"] = Json::array({light});
     expect_error(file, "#/images/0/uri: cannot read \"none.png\": the file does not exist; check the name");
     file.root["images"][0] = {{"bufferView", file.add_view<char>({'G', 'I', 'F', '8'})}};
     expect_text_error(
