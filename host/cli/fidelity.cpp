@@ -135,6 +135,7 @@ ExitCode run(const FidelityArguments& arguments, std::vector<std::string> own,
     std::vector<std::string> words = words_of(scenario, root, folder.path() / "transforms.json", own);
     std::ranges::reverse(words);  // As CLI11 has it.
     CLI::App app;
+    app.allow_windows_style_options(false);  // As in program.cpp.
     const Command render = add_render_command(app, command_line);
     words.emplace_back("render");
     try {

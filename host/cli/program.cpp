@@ -95,6 +95,7 @@ static bool parse_command_line(CLI::App& app, const std::vector<std::string>& wo
 
 ExitCode run_program(const std::vector<std::string>& words) {
     CLI::App app;
+    app.allow_windows_style_options(false);  // A scene may be named /scenes/box.json on Windows, too.
     const std::vector<Command> commands = declare_program(app, command_line_text(words));
     if (!parse_command_line(app, words)) return ExitCode::done;
     for (const Command& command : commands) {

@@ -2,6 +2,7 @@
 // files.
 #pragma once
 
+#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -57,11 +58,18 @@ inline Words operator+(Words a, const Words& b) {
     return a;
 }
 
+// The program under test: the one of this build, or another one that runs on its behalf
+// (cmake/try_windows.sh).
+inline std::string tested_program() {
+    const char* const other = std::getenv("CANDELA_TESTED_PROGRAM");
+    return other == nullptr ? CANDELA_BINARY : other;
+}
+
 class CliTest : public testing::Test {
   protected:
     // The call of candela with these arguments, and its environment: with validation, and compiled
     // kernels kept between tests.
-    static Words call(const Words& arguments) { return Words{CANDELA_BINARY} + arguments; }
+    static Words call(const Words& arguments) { return Words{tested_program()} + arguments; }
     static ProcessOptions options(std::map<std::string, std::string> environment = {}) {
         environment.insert(
             {{"CANDELA_VALIDATION", "1"}, {"XDG_CACHE_HOME", CANDELA_CACHE}, {"TERM", "xterm"}});

@@ -30,7 +30,7 @@ TEST_F(RenderFiles, AttributesTellHowTheImageWasMade) {
     EXPECT_EQ(text("candela.identity").size(), 16u);
     EXPECT_NE(text("candela.device"), "");
     EXPECT_NE(text("candela.driver"), "");
-    EXPECT_EQ(text("candela.commandLine"), std::string(CANDELA_BINARY) + " render " + CORNELL_BOX +
+    EXPECT_EQ(text("candela.commandLine"), tested_program() + " render " + CORNELL_BOX +
                                                " --size 32x32 --spp 4 -o '" + output + "' --seed 7");
 }
 

@@ -59,7 +59,7 @@ class ViewTest : public CliTest {
                   std::map<std::string, std::string> variables = {}) {
         variables.merge(environment());
         const Words scenes = scene.empty() ? Words{} : Words{scene};
-        viewer_.emplace(Words{"/usr/bin/env", "-C", file(""), CANDELA_BINARY, "view"} + scenes + arguments,
+        viewer_.emplace(Words{"/usr/bin/env", "-C", file(""), tested_program(), "view"} + scenes + arguments,
                         ProcessOptions{.environment = std::move(variables)});
         return *viewer_;
     }

@@ -1,7 +1,6 @@
 // What the tests of files and errors share: a temporary directory, and the message of an error.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -9,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "os/mapped_file.h"
 
 namespace candela {
 
@@ -16,9 +16,9 @@ namespace candela {
 class TemporaryDirectory {
   public:
     TemporaryDirectory() {
-        std::string name = (std::filesystem::temp_directory_path() / "candela-test-XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot create " + name);
-        path_ = name;
+        path_ = std::filesystem::temp_directory_path() / ("candela-test-" + os::random_digits());
+        if (!std::filesystem::create_directory(path_))
+            throw std::runtime_error("cannot create " + path_.string());
     }
     TemporaryDirectory(const TemporaryDirectory&) = delete;
     TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;

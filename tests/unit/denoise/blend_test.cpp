@@ -13,14 +13,14 @@ namespace {
 
 constexpr float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
 constexpr uvec2 SIZE(120, 99);
-constexpr size_t PIXELS = size_t{SIZE.x} * SIZE.y;
+constexpr size_t PIXEL_COUNT = size_t{SIZE.x} * SIZE.y;
 
 using Planes = std::array<std::vector<float>, 3>;
 
 Planes filled(float value) {
     Planes planes;
     for (std::vector<float>& plane : planes)
-        plane.assign(PIXELS, value);
+        plane.assign(PIXEL_COUNT, value);
     return planes;
 }
 
@@ -28,7 +28,7 @@ Planes filled(float value) {
 Planes checkered(float value, float difference) {
     Planes planes = filled(value);
     for (std::vector<float>& plane : planes) {
-        for (uint32_t i = 0; i < PIXELS; ++i)
+        for (uint32_t i = 0; i < PIXEL_COUNT; ++i)
             plane[i] += (i % SIZE.x + i / SIZE.x) % 2 == 0 ? difference : -difference;
     }
     return planes;
@@ -40,7 +40,8 @@ RgbPlanes view(const Planes& planes) {
 
 std::vector<float> weights_of(const Planes& noisy, const Planes& variance, const Planes& denoised,
                               float own = 0.0f) {
-    return noisy_weights(SIZE, view(noisy), view(variance), {denoised, {}, std::vector<float>(PIXELS, own)});
+    return noisy_weights(SIZE, view(noisy), view(variance),
+                         {denoised, {}, std::vector<float>(PIXEL_COUNT, own)});
 }
 
 // All pixels differ by 0.1. Where the variance is V, noise explains 0.85 (1 - s) V of the squared difference.
@@ -87,8 +88,8 @@ TEST(Blend, WhereNeighboursAgreeTheDifferenceIsABias) {
 
 TEST(Blend, WithoutNoiseItIsTheNoisyPictureBitByBit) {
     const Planes noisy = filled(0.1f);
-    Denoised denoised{filled(0.7f), std::vector<float>(PIXELS, 0.3f), {}};
-    const std::vector<float> alpha(PIXELS, 0.9f);
+    Denoised denoised{filled(0.7f), std::vector<float>(PIXEL_COUNT, 0.3f), {}};
+    const std::vector<float> alpha(PIXEL_COUNT, 0.9f);
     blend(noisy_weights(SIZE, view(noisy), view(filled(0.0f)), denoised), view(noisy), alpha, denoised);
     EXPECT_EQ(denoised.rgb, noisy);
     EXPECT_EQ(denoised.alpha, alpha);
@@ -106,7 +107,7 @@ TEST(Blend, ValuesThatAreNotFiniteStayWhereTheyAre) {
     EXPECT_EQ(weights[at], 0.0f);
     EXPECT_EQ(weights[at + 5], 0.0f);
     EXPECT_EQ(weights[at + 10], 1.0f);
-    for (size_t i = 0; i < PIXELS; ++i) {
+    for (size_t i = 0; i < PIXEL_COUNT; ++i) {
         if (i == at || i == at + 5 || i == at + 10) continue;
         EXPECT_NEAR(weights[i], clean[i], 1e-5) << i;
     }
@@ -162,7 +163,7 @@ TEST(Blend, ItIsNeverWorseThanTheNoisyPicture) {
         const double omega = 9.0 / 81.0 / 3.0,
                      gain = (2 * 0.85 - 0.85 * 0.85 - 4 * 0.85 * omega) / (1 + bias * bias);
         const double w = 1.0 - 0.85 / (1.0 + bias * bias);
-        const double chance = 4.0 * 2.0 * w * (1.0 - w) * bias / std::sqrt(3.0 * PIXELS);
+        const double chance = 4.0 * 2.0 * w * (1.0 - w) * bias / std::sqrt(3.0 * PIXEL_COUNT);
         EXPECT_LT(error(denoised.rgb) / before, 1.0 - gain + chance) << bias;
     }
 }

@@ -68,7 +68,7 @@ Image image_of(uint32_t width, uint32_t height, const std::vector<std::pair<std:
 }
 
 const std::vector<std::pair<std::string, float>> COLOUR = {{"R", 1}, {"G", 2}, {"B", 3}};
-const std::vector<std::pair<std::string, float>> FIRST_HITS = {
+const std::vector<std::pair<std::string, float>> FIRST_HIT_LAYERS = {
     {"Albedo.R", 0}, {"Albedo.G", 0}, {"Albedo.B", 0}, {"N.X", -1}, {"N.Y", -1}, {"N.Z", -1}};
 const std::vector<std::pair<std::string, float>> GUIDES = {
     {"DenoisingAlbedo.R", 0.0f}, {"DenoisingAlbedo.G", 0.0f}, {"DenoisingAlbedo.B", 0.0f},
@@ -82,7 +82,7 @@ std::vector<T> operator+(std::vector<T> a, const std::vector<T>& b) {
 
 // The library gives 2 colour + albedo.
 TEST(DenoiseImage, AddsLayersBesideTheNoisyOnes) {
-    const Image noisy = image_of(20, 10, COLOUR + FIRST_HITS);
+    const Image noisy = image_of(20, 10, COLOUR + FIRST_HIT_LAYERS);
     Image image = noisy;
     const std::unique_ptr<Denoiser> denoiser = fake();
     EXPECT_EQ(denoiser->name(), "oidn");
@@ -105,12 +105,12 @@ TEST(DenoiseImage, AddsLayersBesideTheNoisyOnes) {
 }
 
 TEST(DenoiseImage, PrefersGuidesMadeForDenoisers) {
-    const Image both = image_of(4, 4, COLOUR + FIRST_HITS + GUIDES);
+    const Image both = image_of(4, 4, COLOUR + FIRST_HIT_LAYERS + GUIDES);
     const NoisyPicture input = noisy_picture(both, true, "a.exr");
     EXPECT_EQ(input.albedo->at(0).data(), both.find("DenoisingAlbedo.R")->values.data());
     EXPECT_EQ(input.normal->at(2).data(), both.find("DenoisingNormal.Z")->values.data());
     EXPECT_EQ(describe_guides(both), "with DenoisingAlbedo and DenoisingNormal");
-    const Image first = image_of(4, 4, COLOUR + FIRST_HITS);
+    const Image first = image_of(4, 4, COLOUR + FIRST_HIT_LAYERS);
     EXPECT_EQ(noisy_picture(first, true, "a.exr").albedo->at(1).data(),
               first.find("Albedo.G")->values.data());
     EXPECT_EQ(describe_guides(first), "with Albedo and N");
@@ -121,7 +121,8 @@ TEST(DenoiseImage, SaysWhatItLacks) {
     EXPECT_FALSE(noisy_picture(colour, true, "a.exr").albedo);
     EXPECT_EQ(describe_guides(colour),
               "with colour alone: it has no layer Albedo (--aov albedo,n or, better, denoising)");
-    const Image albedo = image_of(4, 4, COLOUR + std::vector(FIRST_HITS.begin(), FIRST_HITS.begin() + 3));
+    const Image albedo =
+        image_of(4, 4, COLOUR + std::vector(FIRST_HIT_LAYERS.begin(), FIRST_HIT_LAYERS.begin() + 3));
     EXPECT_EQ(describe_guides(albedo), "with Albedo, but without normals: it has no layer N (--aov n)");
     EXPECT_EQ(
         error_of([] {

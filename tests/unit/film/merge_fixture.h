@@ -122,7 +122,7 @@ class Merge : public testing::Test {
     }
     // The message without the folder of the files.
     std::string text(std::string message) const {
-        const std::string prefix = folder_.path().string() + "/";
+        const std::string prefix = (folder_.path() / "").string();
         for (size_t at; (at = message.find(prefix)) != std::string::npos;)
             message.erase(at, prefix.size());
         return message;

@@ -42,7 +42,7 @@ TEST(Exr, ReadsTilesIntegersAndShiftedWindows) {
         greens[i] = half(float(i % 1000));
     }
     {
-        Imf::TiledOutputFile file(path.c_str(), header);
+        Imf::TiledOutputFile file(path.string().c_str(), header);
         Imf::FrameBuffer frame;
         frame.insert("id", Imf::Slice::Make(Imf::UINT, ids.data(), window));
         frame.insert("G", Imf::Slice::Make(Imf::HALF, greens.data(), window));
@@ -66,7 +66,7 @@ void write_row(const fs::path& path, const Imath::Box2i& window, int sampling) {
     const std::vector<float> values(4, 1.0f);
     Imf::FrameBuffer frame;
     frame.insert("Y", Imf::Slice::Make(Imf::FLOAT, values.data(), window, 0, 0, sampling, 1));
-    Imf::OutputFile file(path.c_str(), header);
+    Imf::OutputFile file(path.string().c_str(), header);
     file.setFrameBuffer(frame);
     file.writePixels(1);
 }
@@ -99,12 +99,12 @@ std::vector<half> write_compressed(const fs::path& path, Imf::Compression compre
         frame.insert(name, Imf::Slice::Make(Imf::HALF, values.data(), header.dataWindow()));
     }
     if (tile_size == 0) {
-        Imf::OutputFile file(path.c_str(), header);
+        Imf::OutputFile file(path.string().c_str(), header);
         file.setFrameBuffer(frame);
         file.writePixels(HEIGHT);
     } else {
         header.setTileDescription({tile_size, tile_size, Imf::MIPMAP_LEVELS});
-        Imf::TiledOutputFile file(path.c_str(), header);
+        Imf::TiledOutputFile file(path.string().c_str(), header);
         file.setFrameBuffer(frame);
         file.writeTiles(0, file.numXTiles(0) - 1, 0, file.numYTiles(0) - 1, 0);
         // Without the smaller resolutions, the file would be incomplete.
@@ -154,7 +154,7 @@ TEST(Exr, RefusesAChunkThatIsShorterThanItsPixels) {
     {
         Imf::FrameBuffer frame;
         frame.insert("R", Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow()));
-        Imf::OutputFile file(path.c_str(), header);
+        Imf::OutputFile file(path.string().c_str(), header);
         file.setFrameBuffer(frame);
         file.writePixels(1);
     }
@@ -199,7 +199,7 @@ TEST(Exr, OfSeveralPartsReadsTheFirstAndOfDeepPixelsNone) {
             headers[i].setType(Imf::SCANLINEIMAGE);
             headers[i].channels().insert("Y", Imf::Channel(Imf::FLOAT));
         }
-        Imf::MultiPartOutputFile file(path.c_str(), headers.data(), 2);
+        Imf::MultiPartOutputFile file(path.string().c_str(), headers.data(), 2);
         for (int i = 0; i < 2; ++i) {
             Imf::OutputPart part(file, i);
             Imf::FrameBuffer frame;
@@ -215,7 +215,7 @@ TEST(Exr, OfSeveralPartsReadsTheFirstAndOfDeepPixelsNone) {
         header.setType(Imf::DEEPSCANLINE);
         header.compression() = Imf::ZIPS_COMPRESSION;
         header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
-        Imf::DeepScanLineOutputFile file(path.c_str(), header);
+        Imf::DeepScanLineOutputFile file(path.string().c_str(), header);
         const std::vector<unsigned> counts(4, 1);
         std::vector<float> depths(4, 1.0f);
         std::vector<float*> samples{&depths[0], &depths[1], &depths[2], &depths[3]};

@@ -55,7 +55,7 @@ class SceneFolder {
     }
 
     std::string without_folder(std::string message) const {
-        const std::string prefix = folder_.path().string() + '/';
+        const std::string prefix = (folder_.path() / "").string();
         for (size_t at = message.find(prefix); at != std::string::npos; at = message.find(prefix)) {
             message.erase(at, prefix.size());
         }

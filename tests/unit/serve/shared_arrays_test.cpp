@@ -20,7 +20,7 @@ TEST(SharedArrays, AreWhereTheRequestSays) {
     const SharedMemory memory(64);
     const std::array<float, 4> numbers{1.0f, 2.0f, 3.0f, 4.0f};
     std::memcpy(memory.bytes().data() + 8, numbers.data(), sizeof numbers);
-    const std::string file = R"({"file": ")" + memory.path().string() + '"';
+    const std::string file = R"({"file": ")" + memory.path().generic_string() + '"';
     const json::Document document{"request",
                                   json::parse("{\"a\": " + file +
                                                   R"(, "offset": 8, "type": "float32", "shape": [2, 2]},
