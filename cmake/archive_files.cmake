@@ -97,9 +97,14 @@ endforeach()
 foreach(package IN ITEMS libcli11-dev libglm-dev libstb-dev libvulkan-volk-dev nlohmann-json3-dev)  # Headers alone.
     add(${package} STATIC_LINK)
 endforeach()
-# What a compiler for Windows links, and what was built from Debian's sources: NAME VERSION in each line.
-if(windows)
-    foreach(package IN ITEMS gcc-mingw-w64-x86-64-posix-runtime libz-mingw-w64-dev mingw-w64-x86-64-dev)
+# What a portable program has inside: packages of Debian, and what was built from Debian's sources: NAME VERSION in each
+# line.
+if(built_from_source)
+    set(packages libdraco-dev libjpeg62-turbo-dev libpng-dev libstdc++-12-dev libwebp-dev zlib1g-dev)
+    if(windows)
+        set(packages gcc-mingw-w64-x86-64-posix-runtime libz-mingw-w64-dev mingw-w64-x86-64-dev)
+    endif()
+    foreach(package IN LISTS packages)
         add(${package} STATIC_LINK)
     endforeach()
     file(STRINGS ${built_from_source}/versions sources)

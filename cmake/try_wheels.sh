@@ -1,8 +1,9 @@
 #!/bin/sh
-# Makes the wheels, and tries them as users do: in a fresh virtual environment without the source tree; and in a Debian
-# of nothing but Python, below build/, as an ordinary user, where the wheel alone says what to install, and with
-# candela-lavapipe renders. Needs root, debootstrap, a mirror of Debian that apt knows, and an index of Python packages;
-# where one of them is missing it says so and exits with 3.   usage: sh cmake/try_wheels.sh
+# Makes the wheels and the portable archive, and tries them as users do: in a fresh virtual environment without the source
+# tree; and in a Debian of nothing but Python, below build/, as an ordinary user, where the wheel alone says what to
+# install, and with candela-lavapipe renders, and so does the program of the archive. Needs root, debootstrap, a mirror of
+# Debian that apt knows, and an index of Python packages; where one of them is missing it says so and exits with 3.
+# usage: sh cmake/try_wheels.sh
 set -eu
 cd "$(dirname "$0")/.."
 . cmake/setup.sh
@@ -42,6 +43,10 @@ if sys.argv[1:] == ["no driver"]:
         assert error.kind == "no_device" and "libvulkan1" in str(error) and "pip install candela-lavapipe" in str(error)
         sys.exit()
     sys.exit("It found a driver.")
+if sys.argv[1:] == ["archive"]:
+    from candela import _driver
+    program = "/archive/bin/candela"
+    subprocess.run([program, "selftest", "--effort", "quick"], env=_driver.environment(program), check=True)
 image = candela.load(scene).render(spp=16)
 # A white furnace: half of what a diffuse sphere of reflectance 0.5 sees is white.
 assert abs(float(image.rgb[24, 32].mean()) - 0.5) < 0.05 and float(image.rgb[0, 0].mean()) == 1
@@ -71,6 +76,8 @@ rm -rf --one-file-system "$root"
 debootstrap --variant=minbase --include=python3-venv "${mirror##* }" "$root" "${mirror%% *}" >"$wheels/debian.log" ||
     { tail -n 20 "$wheels/debian.log"; exit 1; }
 cp -r "$wheels/index" "$root/wheels"
+mkdir "$root/archive"
+tar -C "$root/archive" --strip-components 1 -xzf "$wheels"/candela-*.tar.gz
 # shellcheck disable=SC2016  # The inner shell replaces these.
 unshare --mount --pid --fork --kill-child sh -eu -c '
     mount -t proc proc "$1/proc"
@@ -81,6 +88,6 @@ unshare --mount --pid --fork --kill-child sh -eu -c '
         try/bin/pip install --quiet --no-index --find-links /wheels candela-render
         try/bin/python /wheels/try.py \"no driver\"
         try/bin/pip install --quiet --no-index --find-links /wheels candela-lavapipe
-        try/bin/python /wheels/try.py"' sh "$root"
+        try/bin/python /wheels/try.py archive"' sh "$root"
 rm -rf --one-file-system "$root"
 ls -l "$wheels"/candela_*.whl

@@ -1,8 +1,9 @@
 #!/bin/sh
-# Makes the wheel of the Python package for all Linux systems whose glibc is new enough, in build/wheel:
-# candela_render-VERSION-py3-none-manylinux_2_N_x86_64.whl, for every Python from 3.9 on. All libraries but glibc are in
-# the program: those that Debian has as archives, and OpenEXR with Imath and meshoptimizer, which are built from Debian's
-# sources. Needs apt, Python's venv, and an index of Python packages for the tools.
+# Makes two packages for all Linux systems whose glibc is new enough, in build/wheel: the archive
+# candela-VERSION-linux-x86_64.tar.gz, and the wheel of the Python package, for every Python from 3.9 on,
+# candela_render-VERSION-py3-none-manylinux_2_N_x86_64.whl. All libraries but glibc are in the program: those that Debian
+# has as archives, and OpenEXR with Imath and meshoptimizer, which are built from Debian's sources. Needs apt, Python's
+# venv, and an index of Python packages for the tools.
 # usage: sh cmake/wheel.sh
 set -eu
 cd "$(dirname "$0")/.."
@@ -36,7 +37,9 @@ rm -rf "$folder/raw" "$folder"/candela_render-*.whl
     --config-settings "cmake.define.CANDELA_LICENSES=$folder/licenses" .
 "$folder/tools/bin/auditwheel" show "$folder"/raw/candela_render-*.whl
 PATH=$folder/tools/bin:$PATH auditwheel repair --only-plat --wheel-dir "$folder" "$folder"/raw/candela_render-*.whl
-ls -l "$folder"/candela_render-*.whl
+SOURCE_DATE_EPOCH=$(git log -1 --format=%ct 2>/dev/null || echo 0) \
+    cpack -G TGZ --config "$folder/portable/CPackConfig.cmake" -B "$folder"
+ls -l "$folder"/candela_render-*.whl "$folder"/candela-*.tar.gz
 
 # What the program needs must be glibc's: auditwheel allows more, such as the C++ run-time library.
 rm -rf "$folder/unpacked"
@@ -44,3 +47,5 @@ rm -rf "$folder/unpacked"
 others=$(objdump -p "$folder/unpacked/candela/candela" | sed -n 's/^ *NEEDED *//p' |
     grep -Ev '^(libc|libm|libdl|libpthread|librt)\.so|^ld-linux' || true)
 [ -z "$others" ] || { echo "The program needs $others, which should be inside." >&2; exit 1; }
+needed=$(objdump -T "$folder/unpacked/candela/candela" | grep -o 'GLIBC_[0-9.]*' | sort -uV | tail -n 1)
+echo "The program needs $needed, and no other library"
