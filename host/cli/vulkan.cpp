@@ -2,7 +2,7 @@
 #include "cli/vulkan.h"
 
 #include <algorithm>
-#include <latch>
+#include <mutex>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -49,9 +49,12 @@ static void check_address_space() {
 static void check_threads() {
     // Lavapipe's: two pools of a thread per core, each of at most 16, and two threads more.
     const size_t needed = 2 * std::clamp<size_t>(std::thread::hardware_concurrency(), 1, 16) + 2;
-    std::latch end(1);
-    const std::vector<JoiningThread> threads = start_helpers(needed, [&end] { end.wait(); });
-    end.count_down();
+    // No std::latch: that of GCC 12 for Windows sometimes sleeps through its end.
+    std::mutex all_started;
+    std::unique_lock starting(all_started);
+    const std::vector<JoiningThread> threads =
+        start_helpers(needed, [&all_started] { const std::lock_guard waits(all_started); });
+    starting.unlock();
     if (threads.size() < needed) {
         throw Error("cannot use Vulkan: its drivers start up to " + std::to_string(needed) +
                     " threads, and the system allows only " + std::to_string(threads.size()) +
