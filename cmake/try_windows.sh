@@ -32,7 +32,8 @@ program=$(echo "$place"/candela-*/candela.exe)
 export WINEPREFIX="$folder/wine" WINEDEBUG=-all
 # Wine's Vulkan needs a display.
 Xvfb -displayfd 3 -screen 0 1280x800x24 3>"$folder/display" 2>"$folder/xvfb.log" &
-trap 'kill $!' EXIT
+server=$!
+trap 'kill $server' EXIT
 while [ ! -s "$folder/display" ]; do sleep 0.1; done
 DISPLAY=:$(cat "$folder/display")
 export DISPLAY
@@ -53,4 +54,11 @@ sh cmake/same_pictures.sh "$folder/candela"
 # Without what asks for symbolic links, which the compiler's library lacks, or for a clock of CPU time finer than 1/64 s.
 lacking='BenchBuild.MeasuresSpeed*:GltfFileTest.NamesNoFileOutside*:ObjTextures.ImagesOutOfReach*'
 "$wine" build/windows/release/tests/unit_tests.exe --gtest_brief=1 "--gtest_filter=-$lacking"
+# Without what needs signals, terminals, faults, full disks or windows as Linux has them, shows names that Windows refuses,
+# or loads a library of Linux.
+some='Usage.*:Compare.*:RenderOptionsTest.*:RenderFiles.*:LightingOptionsTest.*:BackgroundOptions.*:CatcherOptionsTest.*'
+some=$some':Batch.*:BatchOptions.*:Cameras.*:CheckpointTest.*:Frames.*:Ids.*:Info.*:Instances.*:MergeTest.*:MotionLayer.*'
+some=$some':PlotTest.*-RenderFiles.AttributesTell*:RenderFiles.ReportHas*:RenderFiles.CompiledKernels*:Batch.GoesOn*'
+some=$some':Batch.Counts*:Batch.SaysOnce*:CheckpointTest.Signals*:CheckpointTest.AFullDisk*:PlotTest.ASinglePoint*'
+CANDELA_TESTED_PROGRAM=$folder/candela build/release/tests/cli_tests --gtest_brief=1 "--gtest_filter=$some"
 /usr/bin/python3 tests/python/windows_test.py "$folder/candela" "$linux"
