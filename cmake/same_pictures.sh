@@ -1,24 +1,27 @@
 #!/bin/sh
-# Renders the gallery, small, by build/release/candela and by another program, and fails if any picture has other bits.
-# usage: sh cmake/same_pictures.sh PROGRAM
+# Renders the gallery, small, by build/release/candela and by another program, or by the same on another driver; prints
+# both hashes of each picture, and fails if they differ.
+# usage: sh cmake/same_pictures.sh PROGRAM, or: sh cmake/same_pictures.sh env VARIABLE=VALUE... PROGRAM
 set -eu
 cd "$(dirname "$0")/.."
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
 
-# hash PROGRAM SCENE: prints that of its picture.
+# hash SCENE PROGRAM: prints that of its picture.
 hash() {
-    "$1" render "$2" --size 64x48 --spp 4 --quiet -o "$folder/picture.png" --report "$folder/report.json"
+    scene=$1
+    shift
+    "$@" render "$scene" --size 64x48 --spp 4 --quiet -o "$folder/picture.png" --report "$folder/report.json"
     sed -n 's/^.*"image_hash": "\([0-9a-f]*\)".*$/\1/p' "$folder/report.json"
 }
 
 for scene in scenes/*.json; do
     [ "$scene" != scenes/scene.schema.json ] || continue
-    ours=$(hash build/release/candela "$scene")
-    others=$(hash "$1" "$scene")
+    ours=$(hash "$scene" build/release/candela)
+    others=$(hash "$scene" "$@")
     echo "$scene: $ours, $others"
     if [ -z "$ours" ] || [ "$ours" != "$others" ]; then
-        echo "$scene: other bits by $1" >&2
+        echo "$scene: other bits by $*" >&2
         exit 1
     fi
 done
