@@ -16,9 +16,7 @@ target_link_libraries(test_support PUBLIC candela_cli kernel_bounds draco meshop
 target_include_directories(test_support PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
 target_compile_definitions(test_support PUBLIC CANDELA_SCENES="${CMAKE_SOURCE_DIR}/scenes"
     CANDELA_TANGENTS="${CMAKE_CURRENT_SOURCE_DIR}/unit/scene/tangents" $<$<BOOL:${CANDELA_HAS_VIEW}>:CANDELA_VIEW>)
-target_compile_options(test_support PUBLIC $<$<CONFIG:Release>:-O1>)
+target_compile_options(test_support PUBLIC ${test_flags})
 add_executable(unit_tests ${sources})
 target_link_libraries(unit_tests PRIVATE test_support $<$<BOOL:${CANDELA_HAS_VIEW}>:imgui>)
-target_precompile_headers(unit_tests PRIVATE <gtest/gtest.h> <glm/glm.hpp> <nlohmann/json.hpp> <volk.h>
-    <algorithm> <array> <chrono> <cmath> <filesystem> <fstream> <functional> <map> <optional> <random> <string> <variant>
-    <vector>)
+target_precompile_headers(unit_tests PRIVATE ${test_headers})

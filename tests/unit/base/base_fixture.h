@@ -12,13 +12,14 @@
 
 namespace candela {
 
-// A new, empty directory; removed with all its contents.
+// A new, empty directory, for this user alone; removed with all its contents.
 class TemporaryDirectory {
   public:
     TemporaryDirectory() {
         path_ = std::filesystem::temp_directory_path() / ("candela-test-" + os::random_digits());
         if (!std::filesystem::create_directory(path_))
             throw std::runtime_error("cannot create " + path_.string());
+        std::filesystem::permissions(path_, std::filesystem::perms::owner_all);
     }
     TemporaryDirectory(const TemporaryDirectory&) = delete;
     TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
