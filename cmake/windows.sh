@@ -7,7 +7,7 @@ set -eu
 cd "$(dirname "$0")/.."
 . cmake/setup.sh
 . cmake/sources.sh
-install_packages render wheel windows
+install_packages render wheel cross windows
 folder=$PWD/build/windows
 root=$folder/root
 toolchain=-DCMAKE_TOOLCHAIN_FILE=$PWD/cmake/mingw.cmake
