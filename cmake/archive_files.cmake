@@ -116,4 +116,24 @@ if(built_from_source)
         describe(${package} ${version} source ${package} STATIC_LINK)
     endforeach()
 endif()
+# Which is of no package of Debian (cmake/basisu.sh).
+if(basisu)
+    file(COPY_FILE ${basisu}/copyright ${root}/${documents}/licenses/basisu.txt)
+    file(STRINGS ${basisu}/VERSION tag REGEX "^tag v")
+    string(REPLACE "tag " "" tag "${tag}")
+    string(REGEX REPLACE "^v([0-9]+)_" "\\1." basisu_version "${tag}")
+    string(APPEND sbom "
+PackageName: basisu
+SPDXID: SPDXRef-basisu
+PackageVersion: ${basisu_version}
+PackageSupplier: Organization: Binomial LLC
+PackageDownloadLocation: git+https://github.com/BinomialLLC/basis_universal@${tag}
+FilesAnalyzed: false
+PackageLicenseConcluded: Apache-2.0 AND BSD-3-Clause
+PackageLicenseDeclared: Apache-2.0 AND BSD-3-Clause
+PackageLicenseComments: <text>See licenses/basisu.txt.</text>
+PackageCopyrightText: NOASSERTION
+Relationship: SPDXRef-candela STATIC_LINK SPDXRef-basisu
+")
+endif()
 file(WRITE ${root}/${documents}/sbom.spdx "${sbom}")

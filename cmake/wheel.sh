@@ -21,6 +21,8 @@ if [ ! -f "$static/complete" ] || [ ! -f "$static/lib/libmeshoptimizer.a" ]; the
     archive meshoptimizer "$static" -DMESHOPT_BUILD_SHARED_LIBS=OFF -DMESHOPT_BUILD_GLTFPACK=OFF
     touch "$static/complete"
 fi
+sh cmake/basisu.sh
+license basisu build/basisu/copyright
 for package in libpng-dev libjpeg62-turbo-dev libwebp-dev libdraco-dev zlib1g-dev libstdc++-12-dev libvulkan-volk-dev libstb-dev \
     nlohmann-json3-dev libcli11-dev libglm-dev libdeflate-dev; do
     if [ -f "/usr/share/doc/$package/copyright" ]; then license "$package" "/usr/share/doc/$package/copyright"; fi

@@ -12,6 +12,7 @@ folder=$PWD/build/windows
 root=$folder/root
 toolchain=-DCMAKE_TOOLCHAIN_FILE=$PWD/cmake/mingw.cmake
 mkdir -p "$folder"
+sh cmake/basisu.sh
 
 if [ ! -f "$root/complete" ]; then
     rm -rf "$root"

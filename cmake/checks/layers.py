@@ -21,6 +21,7 @@ LIBRARIES = {
     "libpng": r"png\.h",
     "libjpeg": r"jpeglib\.h|jerror\.h",
     "libwebp": r"webp/",
+    "Basis Universal": r"basisu_transcoder",
     "Draco": r"draco/",
     "meshoptimizer": r"meshoptimizer",
     "nlohmann-json": r"nlohmann/",

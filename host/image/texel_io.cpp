@@ -31,10 +31,11 @@ struct TexelFormat {
     std::array<std::string_view, 4> extensions;
 };
 
-constexpr std::array<TexelFormat, 7> TEXEL_FORMATS{
+constexpr std::array<TexelFormat, 8> TEXEL_FORMATS{
     {{{"a PNG image", 0, "\x89PNG\r\n\x1a\n"sv}, decode_png_texels, {".png", ".apng"}},
      {{"a JPEG image", 0, "\xff\xd8\xff"sv}, decode_jpeg_texels, {".jpg", ".jpeg", ".jpe", ".jfif"}},
      {{"a WebP image", 8, "WEBP"sv}, decode_webp_texels, {".webp"}},
+     {{"a KTX 2 texture", 0, "\xabKTX 20"sv}, decode_ktx_texels, {".ktx2"}},
      {{"a Radiance picture", 0, HDR_MAGIC}, decode_hdr_texels, {".hdr", ".pic"}},
      {{"an OpenEXR image", 0, EXR_MAGIC}, decode_exr_texels, {".exr"}},
      {{"a BMP image", 0, "BM"sv}, decode_bmp_texels, {".bmp", ".dib"}},

@@ -1,5 +1,5 @@
-// Files of the images that are textures: PNG, JPEG, WebP, Radiance HDR, OpenEXR, BMP and Targa, told apart by
-// their first bytes.
+// Files of the images that are textures: PNG, JPEG, WebP, KTX 2, Radiance HDR, OpenEXR, BMP and Targa, told
+// apart by their first bytes.
 #pragma once
 
 #include <cstdint>
@@ -25,6 +25,8 @@ struct TexelLimits {
 //             become RGB, and transparent colours an alpha channel. For an animation, the default image.
 //   JPEG      grey or of three colours, baseline or progressive, of 8 bits.
 //   WebP      lossy or lossless, without animation.
+//   KTX 2     one image, compressed by Basis Universal as ETC1S or UASTC: its largest level, of 8 bits. Only
+//             if reads_ktx_texels().
 //   Radiance  as read_hdr(), as halves.
 //   OpenEXR   as read_exr(): R, G and B, or Y, each with A or without, as halves. Its colours, premultiplied
 //             by convention, are divided by alpha wherever that is above 0.
@@ -37,5 +39,8 @@ struct TexelLimits {
 // Radiance, most kinds of OpenEXR, BMP, Targa). Any number of threads may call it.
 TexelImage decode_texels(std::string_view bytes, const std::filesystem::path& name,
                          std::vector<std::string>& warnings, const TexelLimits& limits = {});
+
+// Whether this program is built with a decoder for KTX 2 (cmake/basisu.sh).
+bool reads_ktx_texels();
 
 }  // namespace candela

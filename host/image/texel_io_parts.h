@@ -34,6 +34,7 @@ TexelImage make_texels(uvec2 size, uint32_t channels, TexelType type);
 TexelImage decode_png_texels(const TexelSource& source);
 TexelImage decode_jpeg_texels(const TexelSource& source);
 TexelImage decode_webp_texels(const TexelSource& source);
+TexelImage decode_ktx_texels(const TexelSource& source);
 TexelImage decode_hdr_texels(const TexelSource& source);
 TexelImage decode_exr_texels(const TexelSource& source);
 TexelImage decode_bmp_texels(const TexelSource& source);

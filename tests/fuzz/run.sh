@@ -15,6 +15,7 @@ if ! command -v clang++ >/dev/null; then
     . cmake/setup.sh
     install_packages render test fuzz
 fi
+sh cmake/basisu.sh
 cmake --preset fuzz >/dev/null
 cmake --build --preset fuzz
 mkdir -p build/fuzz/findings
@@ -25,9 +26,11 @@ export ASAN_OPTIONS=quarantine_size_mb=16 UBSAN_OPTIONS=print_stacktrace=1
 printf '%s\n' "$@" | xargs -P "$(nproc)" -I NAME sh -c '
     name=NAME
     mkdir -p "build/fuzz/corpora/$name"
+    more=
+    if [ "$name" = ktx ]; then more=build/basisu/fixtures; fi
     if "build/fuzz/tests/fuzz_$name" $effort -rss_limit_mb=512 -timeout=5 "-dict=tests/fuzz/$name.dict" \
         "-artifact_prefix=build/fuzz/findings/$name-" -print_final_stats=1 -verbosity=0 \
-        "build/fuzz/corpora/$name" "tests/fuzz/corpora/$name" >"build/fuzz/$name.log" 2>&1; then
+        "build/fuzz/corpora/$name" "tests/fuzz/corpora/$name" $more >"build/fuzz/$name.log" 2>&1; then
         echo "$name: $(sed -n "s/stat::number_of_executed_units: *//p" "build/fuzz/$name.log") inputs, no finding"
     else
         tail -n 40 "build/fuzz/$name.log"

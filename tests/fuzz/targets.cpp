@@ -251,6 +251,10 @@ void webp(std::string_view bytes) {
     texels(bytes, "fuzz.webp");
 }
 
+void ktx(std::string_view bytes) {
+    if (reads_ktx_texels()) texels(bytes, "fuzz.ktx2");
+}
+
 void targa(std::string_view bytes) {
     texels(bytes, "fuzz.tga");
 }

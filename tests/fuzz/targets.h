@@ -26,6 +26,7 @@ void exr(std::string_view bytes);
 void png(std::string_view bytes);  // With checksums corrected.
 void jpeg(std::string_view bytes);
 void webp(std::string_view bytes);
+void ktx(std::string_view bytes);  // Does nothing without a decoder.
 void targa(std::string_view bytes);
 void bmp(std::string_view bytes);
 // Images as text, see parse_images(): what the commands do with images that OpenEXR has read without
@@ -42,27 +43,14 @@ struct Target {
     std::string_view name;  // Its inputs are in corpora/NAME.
     void (*run)(std::string_view bytes);
 };
-inline constexpr std::array<Target, 22> TARGETS{{{"scene", scene},
-                                                 {"gltf", gltf},
-                                                 {"glb", glb},
-                                                 {"cost", cost},
-                                                 {"draco", draco},
-                                                 {"meshopt", meshopt},
-                                                 {"obj", obj},
-                                                 {"mtl", mtl},
-                                                 {"ply", ply},
-                                                 {"hdr", hdr},
-                                                 {"exr", exr},
-                                                 {"png", png},
-                                                 {"jpeg", jpeg},
-                                                 {"webp", webp},
-                                                 {"targa", targa},
-                                                 {"bmp", bmp},
-                                                 {"checkpoint", checkpoint},
-                                                 {"merge", merge},
-                                                 {"compare", compare},
-                                                 {"plot", plot},
-                                                 {"cameras", cameras},
-                                                 {"messages", messages}}};
+inline constexpr std::array<Target, 23> TARGETS{
+    {{"scene", scene},     {"gltf", gltf},        {"glb", glb},
+     {"cost", cost},       {"draco", draco},      {"meshopt", meshopt},
+     {"obj", obj},         {"mtl", mtl},          {"ply", ply},
+     {"hdr", hdr},         {"exr", exr},          {"png", png},
+     {"jpeg", jpeg},       {"webp", webp},        {"ktx", ktx},
+     {"targa", targa},     {"bmp", bmp},          {"checkpoint", checkpoint},
+     {"merge", merge},     {"compare", compare},  {"plot", plot},
+     {"cameras", cameras}, {"messages", messages}}};
 
 }  // namespace candela::fuzz

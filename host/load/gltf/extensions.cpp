@@ -8,10 +8,14 @@
 #include <string_view>
 #include <utility>
 
+#include "image/texel_io.h"
 #include "load/quote.h"
 
 namespace candela::gltf {
 namespace {
+
+// Read if candela is built with a decoder.
+constexpr std::string_view KTX_IMAGES = "KHR_texture_basisu";
 
 constexpr std::array<std::string_view, 27> READ{"EXT_lights_image_based",
                                                 "EXT_mesh_gpu_instancing",
@@ -98,7 +102,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 14> NOT_READ
      {"KHR_gaussian_splatting", "splats are points, which are left out"},
      {"KHR_gaussian_splatting_compression_spz_2", "splats are points, which are left out"},
      {"KHR_techniques_webgl", "materials look as they do without it"},
-     {"KHR_texture_basisu", OTHER_IMAGES},
+     {KTX_IMAGES, OTHER_IMAGES},
      {"MOZ_lightmap", "light is computed instead"},
      {"MSFT_texture_dds", OTHER_IMAGES},
      {"NV_materials_mdl", "materials look as they do without it"},
@@ -111,7 +115,8 @@ constexpr const char* CONVERT_IMAGES = "convert its images to PNG, JPEG or WebP"
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> REMEDIES{
     {{"EXT_texture_avif", CONVERT_IMAGES},
      {"KHR_gaussian_splatting", "its splats are points without a surface: export a mesh of the scene"},
-     {"KHR_texture_basisu", CONVERT_IMAGES},
+     {KTX_IMAGES,
+      "run sh cmake/basisu.sh and build candela again, or convert its images to PNG, JPEG or WebP"},
      {"MSFT_texture_dds", CONVERT_IMAGES}}};
 
 bool fits(std::string_view name, std::string_view known) {
@@ -119,7 +124,7 @@ bool fits(std::string_view name, std::string_view known) {
 }
 
 bool is_read(std::string_view name) {
-    return std::ranges::find(READ, name) != READ.end();
+    return std::ranges::find(READ, name) != READ.end() || (name == KTX_IMAGES && reads_ktx_texels());
 }
 
 bool is_unseen(std::string_view name) {

@@ -105,7 +105,7 @@ TEST(TexelIo, SaysWhatAFileIsInstead) {
              {"MM\0+"s, "a TIFF image"},
              {"8BPS", "a Photoshop document"},
              {"DDS |", "a DDS texture"},
-             {"\xabKTX 20\xbb", "a KTX texture"},
+             {"\xabKTX 11\xbb", "a KTX texture"},
              {"\0\0\0\x1c"
               "ftypavif"s,
               "an AVIF image"},

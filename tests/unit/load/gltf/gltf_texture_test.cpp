@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "image/texel_io.h"
 #include "support/png_writer.h"
 #include "unit/load/gltf/gltf_fixture.h"
 
@@ -274,16 +275,41 @@ TEST_F(GltfTexture, WebpComesFirstAndUnreadFormatsAreLeftOut) {
     file.root["images"] = {{{"uri", "a.png"}}, {{"uri", "a.webp"}}};
     file.root["textures"][0]["extensions"]["EXT_texture_webp"] = {{"source", 1}};
     EXPECT_EQ(load(file).images.at(0).path, folder_.path() / "a.webp");
-    file.root["textures"][0]["extensions"] = {{"KHR_texture_basisu", {{"source", 1}}}};
+    file.root["textures"][0]["extensions"] = {{"EXT_texture_avif", {{"source", 1}}}};
     EXPECT_EQ(load(file).images.at(0).path, folder_.path() / "a.png");
     file.root["textures"][0].erase("source");
-    for (const std::string name : {"KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"}) {
+    for (const std::string name : {"EXT_texture_avif", "MSFT_texture_dds"}) {
         file.root["textures"][0]["extensions"] = {{name, {{"source", 1}}}};
         EXPECT_FALSE(texture_of(expect_warning(file, "#/textures/0: the texture has an image of " + name +
                                                          " only, which is not read; it is white")));
     }
     file.root["textures"][0].erase("extensions");
     EXPECT_FALSE(texture_of(expect_warning(file, "#/textures/0: the texture has no image; it is white")));
+}
+
+TEST_F(GltfTexture, KtxComesFirstWhereItCanBeRead) {
+    GltfFile file = textured();
+    file.root["images"] = {{{"uri", "a.png"}}, {{"uri", "a.ktx2"}}};
+    file.root["textures"][0]["extensions"] = {{"KHR_texture_basisu", {{"source", 1}}}};
+    file.root["extensionsUsed"] = Json::array({"KHR_texture_basisu"});
+    if (reads_ktx_texels()) {
+        EXPECT_EQ(load(file).images.at(0).path, folder_.path() / "a.ktx2");
+        file.root["extensionsRequired"] = Json::array({"KHR_texture_basisu"});
+        file.root["textures"][0].erase("source");
+        EXPECT_EQ(load(file).images.at(0).path, folder_.path() / "a.ktx2");
+    } else {
+        const Scene scene =
+            expect_warning(file,
+                           "#/extensionsUsed/0: the extension \"KHR_texture_basisu\" is not read: "
+                           "images in PNG, JPEG or WebP are used instead");
+        EXPECT_EQ(scene.images.at(0).path, folder_.path() / "a.png");
+        file.root["extensionsRequired"] = Json::array({"KHR_texture_basisu"});
+        expect_error(
+            file,
+            "#/extensionsRequired/0: the file requires the extension \"KHR_texture_basisu\", which is not "
+            "read; run sh cmake/basisu.sh and build candela again, or convert its images to PNG, JPEG or "
+            "WebP");
+    }
 }
 
 TEST_F(GltfTexture, VariantsReplaceMaterials) {

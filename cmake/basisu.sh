@@ -1,0 +1,33 @@
+#!/bin/sh
+# Gets the decoder of Basis Universal, by Binomial under the Apache licence, into build/basisu: with it, candela reads
+# the KTX 2 textures of KHR_texture_basisu. PyPI's source package opengl-basisu carries its files as they are. The next
+# configuration finds them; candela builds without them, too.
+#   usage: sh cmake/basisu.sh
+set -eu
+cd "$(dirname "$0")/.."
+version=0.1.0a2
+archive=opengl_basisu-$version.tar.gz
+sha256=7364dc63ac0e65f1d32306236514b834e06a22081d1019e8241d8f0a2a6cfeb5
+folder=build/basisu
+[ ! -f "$folder/complete" ] || exit 0
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+python3 -m pip download --quiet --disable-pip-version-check --no-deps --no-binary :all: --dest "$work" \
+    "opengl-basisu==$version"
+if ! echo "$sha256  $work/$archive" | sha256sum --check --status; then
+    echo "$archive is not the file that candela was tested with: its SHA-256 differs from $sha256." >&2
+    exit 1
+fi
+tar -xzf "$work/$archive" -C "$work"
+rm -rf "$folder"
+mkdir -p build
+mv "$work/opengl_basisu-$version/vendor/basis_universal" "$folder"
+mv "$work/opengl_basisu-$version/tests/fixtures" "$folder/"
+{
+    cat "$folder/NOTICE" "$folder/LICENSE"
+    printf '\nThe decoder of Zstandard in it:\n\n'
+    cat "$folder/zstd/LICENSE"
+} >"$folder/copyright"
+touch "$folder/complete"
+echo "Basis Universal is in $folder; configure and build again."
