@@ -23,8 +23,8 @@ std::vector<uint32_t> read_corners(File& file, const Node& primitive, uint32_t v
     std::vector<uint32_t> corners = accessor.integers();
     const auto wrong = std::ranges::find_if(corners, [&](uint32_t i) { return i >= vertices; });
     if (wrong != corners.end()) {
-        accessor.node().fail(concat("index ", wrong - corners.begin(),
-                                    " is not one of the primitive's vertices, which are 0 to ", vertices - 1,
+        accessor.node().fail(concat("index ", wrong - corners.begin(), " is ", *wrong,
+                                    ", but the primitive's vertices are 0 to ", vertices - 1,
                                     "; is the file damaged?"));
     }
     const uint32_t restart = accessor.component() == Component::uint8    ? UINT8_MAX

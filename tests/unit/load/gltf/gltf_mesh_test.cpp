@@ -252,12 +252,10 @@ TEST_F(GltfMesh, RefusesIndicesAndAttributesThatDoNotFit) {
         expect_error(file, message);
     };
     expect({0, 1, 3},
-           "#/accessors/1: index 2 is not one of the primitive's vertices, which are 0 to 2; is the file "
-           "damaged?");
+           "#/accessors/1: index 2 is 3, but the primitive's vertices are 0 to 2; is the file damaged?");
     // The value of a restart, which must not occur.
     expect({0, 65535, 1},
-           "#/accessors/1: index 1 is not one of the primitive's vertices, which are 0 to 2; is the file "
-           "damaged?");
+           "#/accessors/1: index 1 is 65535, but the primitive's vertices are 0 to 2; is the file damaged?");
     GltfFile file;
     const size_t positions = file.add_corner();
     const size_t two = file.add<float>("VEC3", {0, 0, 1, 0, 0, 1});
