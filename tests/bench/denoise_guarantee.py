@@ -2,7 +2,7 @@
 """Measures the guarantee of denoising: relMSE of the denoised picture over that of the noisy one.
 
 usage: denoise_guarantee.py BUILD [SCENE.json ...] [--spp 4,64,256,4096] [--seeds 8] [--width 256] [--reference 16384]
-           [--denoise variance|oidn]
+           [--denoise variance,oidn]
 
 For each scene and number of samples, prints the mean ratio over the seeds with its 95 % interval, the median and the
 worst. The reference of a seed is the mean of pictures of other seeds with the most samples; its own variance, an upper
@@ -43,6 +43,7 @@ def size_of(build, scene, width):
 
 
 def ratios(build, scene, spp, most, args):
+    """The ratio of the errors of each way (rows) for each seed (columns)."""
     folder = build / "denoising"
     folder.mkdir(exist_ok=True)
     size, stem = size_of(build, scene, args.width), scene.stem
@@ -58,12 +59,18 @@ def ratios(build, scene, spp, most, args):
         r = np.mean([planes(other) for other in others], axis=0)
         own = np.mean([planes(other, "Variance.") for other in others], axis=0) / len(others)
         weight = 1.0 / (r * r + 0.01 * r.mean() ** 2)
-        denoised = folder / "denoised.exr"
-        subprocess.run([build / "candela", "denoise", noisy, "-o", denoised, "--denoise", args.denoise], check=True,
-                       stdout=subprocess.DEVNULL)
-        errors = [np.mean(((found - r) ** 2 - own) * weight) for found in (planes(denoised, "Denoised."), planes(noisy))]
-        result.append(errors[0] / errors[1])
-    return np.array(result)
+
+        def error(found):
+            return np.mean(((found - r) ** 2 - own) * weight)
+
+        errors = []
+        for way in args.denoise:
+            denoised = folder / f"{stem}-denoised.exr"
+            subprocess.run([build / "candela", "denoise", noisy, "-o", denoised, "--denoise", way], check=True,
+                           stdout=subprocess.DEVNULL)
+            errors.append(error(planes(denoised, "Denoised.")))
+        result.append(np.array(errors) / error(planes(noisy)))
+    return np.transpose(result)
 
 
 def main():
@@ -74,22 +81,21 @@ def main():
     parser.add_argument("--seeds", type=int, default=8, choices=sorted(T_95))
     parser.add_argument("--width", type=int, default=256)
     parser.add_argument("--reference", type=int, default=16384)
-    parser.add_argument("--denoise", default="variance", choices=("oidn", "variance"))
+    parser.add_argument("--denoise", default="variance,oidn")
     args = parser.parse_args()
+    args.denoise = args.denoise.split(",")
     args.build = args.build.resolve()
     numbers = [int(spp) for spp in args.spp.split(",")]
     most = max(numbers)
     if not most <= args.reference <= (args.seeds - 1) * most:
         parser.error(f"--reference must be from {most} to {(args.seeds - 1) * most}, the samples of the other seeds")
     scenes = args.scenes or [Path("scenes") / f"{name}.json" for name in SCENES]
-    for spp in numbers:
-        means = []
-        for scene in scenes:
-            values = ratios(args.build, scene, spp, most, args)
-            half = T_95[args.seeds] * values.std(ddof=1) / np.sqrt(args.seeds)
-            means.append(values.mean())
-            print(f"{spp:5} {scene.stem:16} {values.mean():.3f} ± {half:.3f}", flush=True)
-        print(f"{spp:5} median {np.median(means):.3f}, worst {max(means):.3f}", flush=True)
+    for scene in scenes:
+        for spp in numbers:
+            for way, values in zip(args.denoise, ratios(args.build, scene, spp, most, args)):
+                half = T_95[args.seeds] * values.std(ddof=1) / np.sqrt(args.seeds)
+                print(f"{spp:5} {scene.stem:16} {way:8} {values.mean():.3f} ± {half:.3f}, median {np.median(values):.3f}, "
+                      f"worst {values.max():.3f}", flush=True)
 
 
 if __name__ == "__main__":
