@@ -5,7 +5,9 @@
 
 #ifdef CANDELA_BASISU
 
+#include <bit>
 #include <cstring>
+#include <string>
 
 #include <basisu_transcoder.h>
 
@@ -20,6 +22,7 @@ bool reads_ktx_texels() {
 
 namespace {
 
+constexpr size_t BLOCK_ALIGNMENT = 4;
 constexpr const char* OTHER_CODEC =
     "its pixels are neither ETC1S nor UASTC, as Basis Universal writes them for glTF; write it as one of "
     "these";
@@ -62,6 +65,16 @@ uint32_t channels_of(const TexelSource& source, const basist::ktx2_transcoder& d
     source.fail("its channels are neither RGB nor RGBA; write it with these");
 }
 
+// Of UASTC: that the decoder finds as many bytes as the blocks have.
+void check_blocks(const TexelSource& source, const basist::ktx2_transcoder& decoder, uint64_t bytes) {
+    const bool packed = decoder.get_header().m_supercompression_scheme == basist::KTX2_SS_ZSTANDARD;
+    const auto& level = decoder.get_level_index()[0];
+    if (!packed && level.m_byte_offset.get_uint64() % BLOCK_ALIGNMENT != 0)
+        source.fail_damaged("its pixels begin where they may not");
+    if ((packed ? level.m_uncompressed_byte_length : level.m_byte_length).get_uint64() != bytes)
+        source.fail_damaged("the size of its pixels is wrong");
+}
+
 // Of RGBA, RGB. The memory stays as it is: another block in its place, among those of many images, costs
 // more.
 void drop_alpha(TexelImage& image) {
@@ -77,8 +90,15 @@ void drop_alpha(TexelImage& image) {
 TexelImage decode_ktx_texels(const TexelSource& source) {
     check_header(source);
     [[maybe_unused]] static const bool TABLES_ARE_MADE = (basist::basisu_transcoder_init(), true);
+    // The decoder reads blocks where they are, as words.
+    std::string copy;
+    const char* bytes = source.bytes.data();
+    if (std::bit_cast<uintptr_t>(bytes) % BLOCK_ALIGNMENT != 0) {
+        copy = source.bytes;
+        bytes = copy.data();
+    }
     basist::ktx2_transcoder decoder;
-    if (!decoder.init(source.bytes.data(), uint32_t(source.bytes.size())))
+    if (!decoder.init(bytes, uint32_t(source.bytes.size())))
         source.fail_damaged("its header is not valid KTX 2 of Basis Universal");
     const uint32_t scheme = decoder.get_header().m_supercompression_scheme;
     const bool etc1s = decoder.is_etc1s() && scheme == basist::KTX2_SS_BASISLZ;
@@ -88,10 +108,7 @@ TexelImage decode_ktx_texels(const TexelSource& source) {
     const uint32_t channels = channels_of(source, decoder);
     const uvec2 size(decoder.get_width(), decoder.get_height());
     const uint64_t block_bytes = uint64_t{16} * ((size.x + 3) / 4) * ((size.y + 3) / 4);
-    const auto& level = decoder.get_level_index()[0];
-    if (uastc && (scheme == basist::KTX2_SS_NONE ? level.m_byte_length : level.m_uncompressed_byte_length)
-                         .get_uint64() != block_bytes)
-        source.fail_damaged("the size of its pixels is wrong");
+    if (uastc) check_blocks(source, decoder, block_bytes);
     // The decoder's memory: the pixels of UASTC without Zstandard, or tables for ETC1S.
     const MemoryCharge inside(block_bytes + (uint64_t{4} << 20));
     TexelImage image = make_texels(size, 4, TexelType::unorm8);

@@ -151,6 +151,17 @@ TEST(TexelKtx, RefusesWhatGltfDoesNotHave) {
               "its 6x5 pixels are more than the 29 allowed here; make the image smaller");
 }
 
+// As in a .glb file, whose views begin anywhere.
+TEST(TexelKtx, TheBytesMayLieAnywhere) {
+    const std::string bytes = four_blocks().bytes();
+    for (size_t shift = 0; shift < 4; ++shift) {
+        const std::string moved = std::string(shift, ' ') + bytes;
+        std::vector<std::string> warnings;
+        const TexelImage image = decode_texels(std::string_view(moved).substr(shift), "a", warnings);
+        EXPECT_EQ(texel(image, 4, 0), (Texel{250, 0, 128, 255}));
+    }
+}
+
 TEST(TexelKtx, DamageCausesOnlyAnError) {
     KtxFile file = four_blocks();
     file.unpacked_bytes = uint64_t{1} << 30;
