@@ -32,7 +32,7 @@ uint32_t textured_bits(const MaterialTextures& t) {
     return bit(t.base != TEXTURE_NONE, TEXTURED_BASE) | bit(t.specular != TEXTURE_NONE, TEXTURED_SPECULAR) |
            bit(t.parameter != TEXTURE_NONE, TEXTURED_PARAMETER) |
            bit(t.normal != TEXTURE_NONE, t.bump != 0 ? TEXTURED_BUMP : TEXTURED_NORMAL) |
-           bit(t.vertex_colors != 0, TEXTURED_VERTEX_COLORS);
+           bit(t.vertex_colors != 0, TEXTURED_VERTEX_COLORS) | bit(t.hidden != 0, TEXTURED_HIDDEN);
 }
 
 uint catcher_code(Catcher catcher) {
@@ -70,7 +70,8 @@ MaterialTextures textures_of(const Material& material, const EncodedMaterial& en
             .cutoff = cutoff.value_or(NO_CUTOFF),
             .vertex_colors = material.vertex_colors ? 1u : 0u,
             .culled = is_culled(material) ? 1u : 0u,
-            .catcher = catcher_code(material.catcher)};
+            .catcher = catcher_code(material.catcher),
+            .hidden = material.hidden ? 1u : 0u};
 }
 
 // What materials know a medium by; appends it to the media if it is new. (The first of them, outside of
@@ -212,7 +213,8 @@ MaterialArrays build_material_arrays(const Scene& scene, const SceneFrame& frame
 }
 
 bool lets_rays_pass(const Scene& scene, const Shape& shape) {
-    return is_culled(scene.materials[shape.material]) || has_opacity(scene, shape);
+    const Material& material = scene.materials[shape.material];
+    return material.hidden || is_culled(material) || has_opacity(scene, shape);
 }
 
 }  // namespace candela

@@ -120,6 +120,7 @@ struct Material {
     bool vertex_colors =
         false;  // The colours of vertices are factors of the model's first colour and of opacity.
     Catcher catcher = Catcher::none;
+    bool hidden = false;  // From the camera: its rays pass. Light and reflections meet the surface.
 
     bool operator==(const Material&) const = default;
 };

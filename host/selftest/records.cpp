@@ -100,7 +100,7 @@ struct Item {
 
 // The kernel's result.
 struct Result {
-    std::array<uint, 268> words;
+    std::array<uint, 269> words;
 };
 
 // Records filled from `fields`, in the order in which the kernel writes them; the scales of a node must be
@@ -209,7 +209,8 @@ Records filled(Fields& fields) {
                            .cutoff = fields.f(),
                            .vertex_colors = fields.keep(1u),
                            .culled = fields.keep(1u),
-                           .catcher = fields.keep(CATCHER_REFLECTIONS)};
+                           .catcher = fields.keep(CATCHER_REFLECTIONS),
+                           .hidden = fields.keep(1u)};
     r.light_textures = {.primitive = fields.u(), .emission = fields.u(), .material = fields.u()};
     r.texture = {.first = fields.u(),
                  .size = {fields.keep(0xABCDu), fields.keep(0xFEDCu)},
@@ -291,6 +292,7 @@ Evidence test_records(const vk::Device& device, SceneAccess access) {
     const DeviceScene on_device(device, packed(records), access, records.parameters);
     KernelConstants constants;
     constants[CONSTANT_ATTRIBUTES] = ATTRIBUTES_ALL;
+    constants[CONSTANT_TEXTURED] = TEXTURED_HIDDEN;
     const Result read =
         probe<Result>(device, kernels::records, std::vector<Item>(1), constants, &on_device)[0];
     Evidence evidence;

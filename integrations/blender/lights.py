@@ -8,9 +8,11 @@ from .axes import placed, to_candela
 from .trees import shader_of, tree_of
 
 
-def add_light(scene, light, matrix, name, glow, notices):
-    """Adds a light to a candela.Scene. light: Blender's data; matrix: its matrix_world; name: what it is called; glow: what
-    its material is, if it has a surface."""
+def add_light(scene, thing, matrix, name, glow, notices):
+    """Adds a light to a candela.Scene. thing: Blender's object; matrix: where it is; name: what it is called; glow: what its
+    material is, if it has a surface."""
+    light = thing.data
+    seen = {} if thing.visible_camera else {"visible_to_camera": False}
     place = f'Light "{name}"'
     power = _power(light, place, notices)
     if not power.any():
@@ -18,11 +20,11 @@ def add_light(scene, light, matrix, name, glow, notices):
     if light.type == "SUN":
         _add_sun(scene, light, matrix, power, name)
     elif light.type == "AREA":
-        _add_area(scene, light, matrix, power, name, glow)
+        _add_area(scene, light, matrix, power, name, glow, seen)
     elif light.type == "SPOT":
-        _add_spot(scene, light, matrix, power, name, glow)
+        _add_spot(scene, light, matrix, power, name, glow, seen)
     else:
-        _add_point(scene, light, matrix, power, name, glow)
+        _add_point(scene, light, matrix, power, name, glow, seen)
 
 
 def _power(light, place, notices):
@@ -52,21 +54,21 @@ def _unknown(node, place, notices):
     return numpy.ones(3)
 
 
-def _add_point(scene, light, matrix, power, name, glow):
+def _add_point(scene, light, matrix, power, name, glow, seen):
     if light.shadow_soft_size > 0:
-        _add_sphere(scene, light, matrix, power, name, glow)
+        _add_sphere(scene, light, matrix, power, name, glow, **seen)
     else:
         scene.add_light("point", name, position=to_candela(matrix.translation), intensity=power / (4 * math.pi))
 
 
-def _add_spot(scene, light, matrix, power, name, glow):
+def _add_spot(scene, light, matrix, power, name, glow, seen):
     half = min(light.spot_size / 2, math.pi / 2)
     # Where the cosine is this, the light begins to fall off.
     inner = math.acos(math.cos(half) + (1 - math.cos(half)) * light.spot_blend)
     cone = {"outer_angle": math.degrees(half), "inner_angle": min(math.degrees(inner), math.degrees(half) * 0.9999),
             "falloff": "smoothstep"}
     if light.shadow_soft_size > 0:
-        _add_sphere(scene, light, matrix, power, name, glow, cone={"direction": [0, 0, -1], **cone})
+        _add_sphere(scene, light, matrix, power, name, glow, cone={"direction": [0, 0, -1], **cone}, **seen)
     else:
         direction = -numpy.array(matrix.col[2][:3])
         scene.add_light("spot", name, position=to_candela(matrix.translation), direction=to_candela(direction),
@@ -97,7 +99,7 @@ def _add_sun(scene, light, matrix, power, name):
                     angle=min(math.degrees(light.angle), 179.9))
 
 
-def _add_area(scene, light, matrix, power, name, glow):
+def _add_area(scene, light, matrix, power, name, glow, seen):
     """A rectangle or an ellipse, which shines along its -Z."""
     width = light.size
     height = light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
@@ -113,7 +115,7 @@ def _add_area(scene, light, matrix, power, name, glow):
         spread["spread"] = math.degrees(2 * half)
         radiance = radiance * math.tan(half) / (math.tan(half) - half)  # All of the power leaves.
     transform = placed(matrix) @ numpy.diag([width, height, 1, 1])
-    keys = {"name": name, "transform": transform, "material": _glowing(scene, glow, radiance), **spread}
+    keys = {"name": name, "transform": transform, "material": _glowing(scene, glow, radiance), **spread, **seen}
     if is_round:
         scene.add_shape("disk", normal=[0, 0, -1], radius=0.5, **keys)
     else:

@@ -22,14 +22,14 @@ _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
 
 
 class _Shown:
-    """A mesh with its materials, and where it is shown."""
+    """A mesh with its materials, how the camera sees it (keys of a shape), and where it is shown."""
 
-    def __init__(self, key, name, parts, materials, catcher):
+    def __init__(self, key, name, parts, materials, seen):
         self.key = key
         self.name = name
         self.parts = parts
         self.materials = materials
-        self.catcher = catcher
+        self.seen = seen
         self.matrices = []
 
 
@@ -69,7 +69,7 @@ class SceneWriter:
             key = ("light", uid_of(thing), uid_of(instance.parent), tuple(instance.persistent_id))
             name = self._cache.name("object", key, title)
             glow = self._cache.name("material", key, f"{name} (light)")
-            add_light(self._scene, thing.data, instance.matrix_world, name, glow, self.notices)
+            add_light(self._scene, thing, instance.matrix_world, name, glow, self.notices)
         elif thing.type in KINDS:
             self._add_mesh(thing, instance)
         elif thing.type in _MISSING:
@@ -87,7 +87,7 @@ class SceneWriter:
             self.notices.add(f'Object "{thing.name}"', "it is flat along an axis of its own; it is left out")
             return
         slots = tuple(slot.material.original if slot.material else None for slot in thing.material_slots)
-        key = (thing.data.as_pointer(), tuple(uid_of(slot) for slot in slots), self._catcher_of(thing))
+        key = (thing.data.as_pointer(), tuple(uid_of(slot) for slot in slots), *self._seen(thing).items())
         if key not in self._shown:
             self._shown[key] = self._read_mesh(thing, instance, slots)
         self._shown[key].matrices.append(matrix)
@@ -97,9 +97,9 @@ class SceneWriter:
         materials = [self._material(slot) for slot in slots] or [self._material(None)]
         if thing.is_holdout and not self._depsgraph.scene.render.film_transparent:
             self.notices.add(f'Object "{thing.name}"', "candela has holdouts before a transparent film alone; it is shown")
-        hidden = [name for name in _RAYS if not getattr(thing, f"visible_{name}")]
+        hidden = [name for name in _RAYS[1:] if not getattr(thing, f"visible_{name}")]
         if hidden:
-            self.notices.add(f'Object "{thing.name}"', f"candela hides objects from all rays or none; it is shown to {', '.join(hidden)}")
+            self.notices.add(f'Object "{thing.name}"', f"candela hides objects from the camera or from all rays; it is shown to {', '.join(hidden)}")
         owner = uid_of(thing)
         key = ("mesh", owner, sum(shown.key[1] == owner for shown in self._shown.values()))
         sources = {owner, uid_of(thing.data), uid_of(instance.parent)}
@@ -113,13 +113,15 @@ class SceneWriter:
                 if thing.type != "MESH":
                     thing.to_mesh_clear()
         parts = self._cache.parts(key, thing.data.as_pointer(), named, sources, read)
-        return _Shown(key, thing.name, parts, materials, self._catcher_of(thing))
+        return _Shown(key, thing.name, parts, materials, self._seen(thing))
 
-    def _catcher_of(self, thing):
-        """The key shadow_catcher of an object, or None."""
+    def _seen(self, thing):
+        """How the camera sees an object, as keys of its shapes."""
+        if not thing.visible_camera:
+            return {"visible_to_camera": False}
         if thing.is_holdout and self._depsgraph.scene.render.film_transparent:
-            return "holdout"
-        return "catch" if thing.is_shadow_catcher else None
+            return {"shadow_catcher": "holdout"}
+        return {"shadow_catcher": "catch"} if thing.is_shadow_catcher else {}
 
     def _second_uv(self, mesh, named):
         """The name of the texture coordinates, besides those of the render, that are named by its materials."""
@@ -146,10 +148,8 @@ class SceneWriter:
             placing = {"transform": shown.matrices[0]} if len(shown.matrices) == 1 else \
                 {"transforms": numpy.array(shown.matrices)}
             title = shown.name if number == 0 else f"{shown.name} ({name})"
-            if shown.catcher is not None:
-                placing["shadow_catcher"] = shown.catcher
             name_of_part = self._cache.name("object", (*shown.key, part.slot), title)
-            self._scene.add_mesh(**arrays, **placing, material=name, name=name_of_part)
+            self._scene.add_mesh(**arrays, **placing, **shown.seen, material=name, name=name_of_part)
 
     def _arrays_for(self, part, made, name):
         arrays = dict(part.arrays)

@@ -23,7 +23,7 @@ void main() {
     uvec2 pixel = parameters.crop + uvec2(number % run.width, number / run.width);
     Sampler random = sampler_make(pixel, gl_LocalInvocationIndex, parameters.seed);
     CameraSample view = camera_sample(parameters, pixel, random);
-    Hit hit = bvh_intersect(view.ray);
+    Hit hit = bvh_seen(view.ray);
     uint word = 0u;
     if (view.sees && is_hit(hit))
         word = is_instanced(hit.instance) ? FIRST_HIT_INSTANCE | hit.instance : hit_id(hit) + 1u;

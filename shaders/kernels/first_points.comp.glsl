@@ -23,7 +23,7 @@ void main() {
     Parameters parameters = scene_parameters();
     vec2 film = vec2(parameters.crop + tile.origin + at) + 0.5;
     Ray ray = camera_ray_sharp(parameters, film);
-    Hit hit = bvh_intersect(ray);
+    Hit hit = bvh_seen(ray);
     uvec4 surface = uvec4(0u), point = uvec4(0u);
     if (is_hit(hit) && camera_sees(parameters, film)) {
         Ray inside = ray;

@@ -19,7 +19,7 @@ void main() {
     Parameters parameters = scene_parameters();
     vec2 film = vec2(parameters.crop + at) + 0.5;
     Ray ray = camera_ray_sharp(parameters, film);
-    Hit hit = bvh_intersect(ray);
+    Hit hit = bvh_seen(ray);
     vec4 value = vec4(vec3(0.0), uintBitsToFloat(0x7F800000u));
     if (is_hit(hit) && camera_sees(parameters, film)) {
         vec3 p = interaction_at(ray, hit).p;

@@ -99,6 +99,7 @@ void sample_advance(Sample s, float t_max, inout Traversal traversal, inout bool
         if (s.alive && !(VOLUMETRIC && s.waits)) traversal = bvh_begin(s.path.ray, t_max, false);
         if (VOLUMETRIC) traversal.iterations = iterations;
         if (HAS_CATCHERS) traversal.alone = s.path.alone;
+        if (HAS_HIDDEN) traversal.of_camera = s.path.depth == 0u;
     }
 }
 
@@ -124,6 +125,7 @@ TraceResult sample_trace(inout Sample s, Parameters parameters) {
     if (shadowed) first = s.shadow.ray;
     Traversal traversal = bvh_begin(first, shadowed ? s.shadow.t_max : t_max, shadowed && !VOLUMETRIC);
     if (HAS_CATCHERS) traversal.alone = shadowed ? s.shadow_alone : s.path.alone;
+    if (HAS_HIDDEN) traversal.of_camera = !shadowed && s.path.depth == 0u;
     if (!shadowed && !s.alive) bvh_end(traversal);
     TraceResult met = TraceResult(false, false, 0u, traversal.hit, traversal.hit);
     if (WALKS && !s.waits) s.walked = false;
@@ -144,7 +146,7 @@ TraceResult sample_trace(inout Sample s, Parameters parameters) {
                 ++steps;
                 more = walks = steps < WALK_STEPS && sample_walks(s, parameters, way, t_max);
                 s.walked = !more;
-                if (more) traversal = bvh_begin(s.path.ray, t_max, false);
+                if (more) traversal = bvh_begin(s.path.ray, t_max, false);  // It has scattered: no camera ray.
             }
         } while (more);
     } else {

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define ITEM_WORDS 1u
-#define RESULT_WORDS 268u
+#define RESULT_WORDS 269u
 #include "probes/items.glsl"
 #include "scene/scene_data.glsl"
 
@@ -140,6 +140,7 @@ void put_material_textures(MaterialTextures t) {
     put(t.vertex_colors);
     put(t.culled);
     put(t.catcher);
+    put(t.hidden);
 }
 
 void put_principled(PrincipledRecord p) {

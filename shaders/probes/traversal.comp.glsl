@@ -16,7 +16,7 @@ Hit brute_force(Ray ray) {
     for (uint i = 0u; i < primitive_count; ++i) {
         meet(i, primitive_hit(ray, shear, scene_primitive(i), i, NO_INSTANCE), hit, candidate);
         for (int k = 0; k < 2; ++k)
-            decide(ray, shear, false, hit, candidate, depth);
+            decide(ray, shear, false, false, hit, candidate, depth);
     }
     return hit;
 }

@@ -10,6 +10,7 @@
 #include "scene/primitive.glsl"
 
 const bool HAS_PASSABLE = (TEXTURED & TEXTURED_PASSABLE) != 0u;
+const bool HAS_HIDDEN = (TEXTURED & TEXTURED_HIDDEN) != 0u;
 const bool HAS_OPACITY = (TEXTURED & TEXTURED_OPACITY) != 0u;
 
 // What dims a shadow ray is a whole number of these parts of an optical depth, so that the sum over the surfaces that
@@ -45,8 +46,9 @@ bool is_hit_from_behind(Ray ray, Primitive p, Hit hit, vec3 n) {
 }
 
 // The opacity of a hit for the ray, in the primitive's space: 0 if the ray passes.
-float hit_opacity(Ray ray, Primitive p, Hit hit) {
+float hit_opacity(Ray ray, bool of_camera, Primitive p, Hit hit) {
     Surface surface = hit_surface(hit);
+    if (HAS_HIDDEN && of_camera && scene_material_textures(surface.material).hidden != 0u) return 0.0;
     vec3 n = ray.o + hit.t * ray.d - p.a;
     if ((PRINCIPLED & PRINCIPLED_HAS_CULLED) != 0u && scene_material_textures(surface.material).culled != 0u &&
         is_hit_from_behind(ray, p, hit, n)) {
@@ -88,11 +90,12 @@ void meet(uint position, Hit found, inout Hit hit, inout Candidate candidate) {
 
 // Makes the candidate the nearest hit if it stops the ray; otherwise the second hit of its primitive is the next
 // candidate, if it may stop the ray. A shadow ray passes what is not opaque, which adds to `depth`, until that is so.
-void decide(Ray ray, RayShear shear, bool shadow, inout Hit hit, inout Candidate candidate, inout uint depth) {
+void decide(Ray ray, RayShear shear, bool shadow, bool of_camera, inout Hit hit, inout Candidate candidate,
+            inout uint depth) {
     if (!HAS_PASSABLE || !is_hit(candidate.hit)) return;
     Hit found = candidate.hit;
     Primitive p = scene_primitive(hit_primitive(found));
-    float opacity = hit_opacity(ray, p, found);
+    float opacity = hit_opacity(ray, of_camera, p, found);
     bool stopped;
     if (HAS_OPACITY && shadow) {
         depth += optical_depth(opacity);

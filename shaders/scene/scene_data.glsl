@@ -211,7 +211,7 @@ CdfEntry scene_environment_cdf(uint i) {
 MaterialTextures scene_material_textures(uint i) {
     uvec4 a, b;
     READ_2(MATERIALS, MATERIAL_TEXTURES, i * MATERIAL_TEXTURES_WORDS, a, b);
-    return material_textures_unpack(a, b, CATCHERS != CATCHERS_NONE);
+    return material_textures_unpack(a, b, CATCHERS != CATCHERS_NONE, (TEXTURED & TEXTURED_HIDDEN) != 0u);
 }
 
 // The textures of the light at that place.

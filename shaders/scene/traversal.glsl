@@ -31,6 +31,7 @@ struct Traversal {
     Ray outside;          // In the frame of the scene.
     uint instance;        // The instance that the ray is in, or NO_INSTANCE.
     uint root;            // The root of its mesh, followed by all nodes of the mesh; 0 outside instances.
+    bool of_camera;       // It is a camera ray, for which hidden surfaces are not there; only if HAS_HIDDEN.
     bool alone;           // Only catchers and what emits are there; only if HAS_CATCHERS.
     uint depth;           // Optical depth of what the ray has passed, in parts; only if HAS_OPACITY and any_hit.
     uint iterations;      // Of loops, for this ray; only if VOLUMETRIC.
@@ -41,7 +42,7 @@ Traversal bvh_begin(Ray ray, float t_max, bool any_hit) {
     stack[0] = PENDING_NONE;
     vec3 inv_d = reciprocals(ray.d);
     return Traversal(ray, inv_d, ray_shear(ray.d, inv_d), any_hit, hit_none(t_max), 0u, PENDING_NONE, 0u, 0u,
-                     candidate_none(), ray, NO_INSTANCE, 0u, false, 0u, 0u);
+                     candidate_none(), ray, NO_INSTANCE, 0u, false, false, 0u, 0u);
 }
 
 // Whether the surface also belongs to the scene without what is seen before catchers: it is one, or it emits.
@@ -98,7 +99,7 @@ bool bvh_ended(Traversal t) {
 // Decides whether the hit for which the traversal waits, if it does, stops the ray.
 void bvh_decide(inout Traversal t) {
     if (!bvh_waits(t)) return;
-    decide(t.ray, t.shear, t.any_hit, t.hit, t.candidate, t.depth);
+    decide(t.ray, t.shear, t.any_hit, t.of_camera, t.hit, t.candidate, t.depth);
     if (t.any_hit && is_hit(t.hit)) bvh_end(t);
 }
 
@@ -169,6 +170,15 @@ void bvh_finish(inout Traversal t) {
 Hit bvh_intersect(Ray ray) {
     bvh_prepare();
     Traversal t = bvh_begin(ray, FLOAT_MAX, false);
+    bvh_finish(t);
+    return t.hit;
+}
+
+// What the camera sees along the ray: the closest hit with t > 0 of what is not hidden, if there is any.
+Hit bvh_seen(Ray ray) {
+    bvh_prepare();
+    Traversal t = bvh_begin(ray, FLOAT_MAX, false);
+    t.of_camera = true;
     bvh_finish(t);
     return t.hit;
 }

@@ -8,7 +8,7 @@
 //                                    catcher & 1 in bit 31 of parameter
 //                                 1: opacity_texture, opacity,
 //                                    cutoff, normal_scale;
-//                                    catcher >> 1 in bit 31 of opacity_texture
+//                                    catcher >> 1 in bit 31 of opacity_texture, hidden in the sign of opacity
 //
 // Texels lie in tiles of 4 x 4, row by row from the top; so do the texels of a tile. Tiles at the right and
 // lower edges are whole.
@@ -86,6 +86,7 @@ struct MaterialTextures {
     uint vertex_colors;    // 1: `base` and opacity are multiplied by the colours of vertices.
     uint culled;           // 1: rays pass the surface from behind.
     uint catcher;          // CATCHER_*
+    uint hidden;           // 1: camera rays pass the surface.
 };
 
 // The surface of a light, and the factors of its radiance.
@@ -104,7 +105,8 @@ const uint TEXTURED_NORMAL = 1u << 4u;
 const uint TEXTURED_OPACITY = 1u << 5u;  // Also if opacity is less than 1 everywhere.
 const uint TEXTURED_EMISSION = 1u << 6u;
 const uint TEXTURED_BUMP = 1u << 7u;
-const uint TEXTURED_PASSABLE = 1u << 8u;  // Rays pass some surface: it has an opacity, or is culled.
+const uint TEXTURED_PASSABLE = 1u << 8u;  // Rays pass some surface: it has an opacity, is culled, or hidden.
+const uint TEXTURED_HIDDEN = 1u << 9u;    // Some surface is hidden from the camera.
 const uint TEXTURED_MATERIALS = TEXTURED_BASE | TEXTURED_SPECULAR | TEXTURED_PARAMETER | TEXTURED_VERTEX_COLORS;
 
 // Attributes of the corners a, b, c, d of primitives, a bit each: the specialization constant ATTRIBUTES. A
@@ -127,8 +129,8 @@ inline std::array<uvec4, TEXTURE_WORDS> pack(const TextureRecord& t) {
 inline std::array<uvec4, MATERIAL_TEXTURES_WORDS> pack(const MaterialTextures& t) {
     return {uvec4(t.base | t.vertex_colors << 31u, t.specular | t.culled << 31u, t.parameter | (t.catcher & 1u) << 31u,
                   t.normal | t.bump << 31u),
-            uvec4(t.opacity_texture | t.catcher >> 1u << 31u, floatBitsToUint(t.opacity), floatBitsToUint(t.cutoff),
-                  floatBitsToUint(t.normal_scale))};
+            uvec4(t.opacity_texture | t.catcher >> 1u << 31u, floatBitsToUint(t.opacity) | t.hidden << 31u,
+                  floatBitsToUint(t.cutoff), floatBitsToUint(t.normal_scale))};
 }
 
 inline std::array<uvec4, LIGHT_TEXTURES_WORDS> pack(const LightTextures& t) {
@@ -160,8 +162,8 @@ TextureRecord texture_unpack(uvec4 a, uvec4 b, uvec4 c) {
     return t;
 }
 
-// `catchers`: whether some material may be a catcher.
-MaterialTextures material_textures_unpack(uvec4 a, uvec4 b, bool catchers) {
+// `catchers`, `hidden`: whether some material may be a catcher, or hidden.
+MaterialTextures material_textures_unpack(uvec4 a, uvec4 b, bool catchers, bool hidden) {
     MaterialTextures t;
     t.base = a.x & MAX_TEXTURES;
     t.vertex_colors = a.x >> 31u;
@@ -172,7 +174,8 @@ MaterialTextures material_textures_unpack(uvec4 a, uvec4 b, bool catchers) {
     t.bump = a.w >> 31u;
     t.opacity_texture = catchers ? b.x & MAX_TEXTURES : b.x;
     t.catcher = catchers ? a.z >> 31u | b.x >> 31u << 1u : CATCHER_NONE;
-    t.opacity = uintBitsToFloat(b.y);
+    t.hidden = hidden ? b.y >> 31u : 0u;
+    t.opacity = uintBitsToFloat(hidden ? b.y & 0x7FFFFFFFu : b.y);
     t.cutoff = uintBitsToFloat(b.z);
     t.normal_scale = uintBitsToFloat(b.w);
     return t;

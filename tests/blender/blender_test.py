@@ -456,14 +456,29 @@ class BlenderTest(SceneTest):
         bpy.ops.script.execute_preset(filepath=str(preset), menu_idname="CANDELA_MT_sampling_presets")
         self.assertEqual((settings.samples, settings.denoise), (77, "variance"))
 
-    def test_objects_are_hidden_from_all_rays_or_none(self):
+    def test_objects_are_hidden_from_the_camera(self):
+        """What is hidden from it still lights; other kinds of rays cannot be told apart."""
         ball = add("uv_sphere", glowing(), radius=1)
+        floor = add("plane", matte(), size=20)
+        floor.location.z = -1
         add_camera()
+        seen = self.render()[..., 0]
         ball.visible_camera = ball.visible_shadow = False
-        self.assertIn('Object "Sphere": candela hides objects from all rays or none; it is shown to camera, shadow', self.notices())
+        self.assertIn('Object "Sphere": candela hides objects from the camera or from all rays; it is shown to shadow', self.notices())
+        hidden = self.render()[..., 0]
+        self.assertLess(hidden.max(), 0.6 * seen.max())
+        self.assertGreater(hidden.min(), 0)
         ball.visible_diffuse = ball.visible_glossy = ball.visible_transmission = False
         self.assertEqual(self.notices(), "")
         self.assertEqual(self.render()[..., 0].max(), 0)
+
+    def test_lamps_are_hidden_from_the_camera(self):
+        """As they are in Blender, until someone shows them."""
+        lamp = add_light("AREA", (0, 0, -1), (0, 0, 10), energy=100, size=2)
+        add_camera()
+        self.assertEqual(self.render()[..., 0].max(), 0)
+        lamp.visible_camera = True
+        self.assertGreater(self.render()[..., 0].max(), 0)
 
     def test_registers_again(self):
         addon.unregister()

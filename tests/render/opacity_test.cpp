@@ -122,6 +122,50 @@ TEST_F(OpacityTest, AShadowRayIsDimmedWithoutNoise) {
     EXPECT_TRUE(std::ranges::equal(plane(image_of(render(reversed, settings, 8)), "", 0), plane(dim, "", 0)));
 }
 
+TEST_F(OpacityTest, TheCameraSeesNothingOfWhatIsHiddenFromIt) {
+    const auto expect_hidden = [&](const auto& geometry) {
+        Scene scene = sky_seen();
+        const uint32_t wall = add_diffuse(scene, vec3(0));
+        add_shape(scene, geometry, wall);
+        expect_fraction(scene, Estimator::mis, 0.0);
+        scene.materials[wall].hidden = true;
+        expect_fraction(scene, Estimator::mis, 1.0);
+    };
+    expect_hidden(pane(0));
+    expect_hidden(Sphere{dvec3(0), 2.0});
+    expect_hidden(Sphere{dvec3(0), 8.0});
+    expect_hidden(Disk{dvec3(0), dvec3(2, 0, 0), dvec3(0, 2, 0)});
+    TriangleMesh triangles;
+    add_triangle(triangles, vec3(-2, -2, 0), vec3(2, -2, 0), vec3(0, 3, 0));
+    expect_hidden(triangles);
+}
+
+// A lamp above the floor and below the camera, and a ball in the way of a point of light: they light and
+// shade as if they were seen.
+TEST_F(OpacityTest, WhatIsHiddenFromTheCameraLightsAndShades) {
+    constexpr double RADIUS = 0.8, HEIGHT = 0.15;
+    for (const Estimator estimator : ESTIMATORS) {
+        SCOPED_TRACE(int(estimator));
+        Scene scene = floor_seen_closely(vec3(1));
+        const uint32_t black = add_diffuse(scene, vec3(0));
+        scene.materials[black].hidden = true;
+        add_shape(scene, Disk{dvec3(0, HEIGHT, 0), dvec3(RADIUS, 0, 0), dvec3(0, 0, RADIUS)}, black,
+                  Emission{vec3(1), false});
+        const double expected = RADIUS * RADIUS / (RADIUS * RADIUS + HEIGHT * HEIGHT);
+        expect_mean(image_of(render(scene, independent_settings(32, estimator, 4), samples(4096))),
+                    glm::dvec3(expected), 1e-4);
+    }
+    Scene shaded = floor_seen_closely(vec3(1));
+    shaded.lights = {{"", PointLight{dvec3(0, 1, 5), vec3(30)}}};  // At the camera.
+    const Image lit = image_of(render(shaded, independent_settings(16, Estimator::mis, 4), samples(8)));
+    EXPECT_GT(image_mean(lit, 0).mean, 0.01);
+    const uint32_t hidden = add_diffuse(shaded, vec3(0));
+    shaded.materials[hidden].hidden = true;
+    add_shape(shaded, Sphere{dvec3(0, 0.2, 1), 0.15}, hidden);  // On the line to the floor.
+    const Image dark = image_of(render(shaded, independent_settings(16, Estimator::mis, 4), samples(8)));
+    EXPECT_EQ(image_mean(dark, 0).mean, 0.0);
+}
+
 // Two triangles that share an edge and are folded onto each other are one primitive. Where a ray hits both,
 // either may be transparent.
 TEST_F(OpacityTest, BothTrianglesOfAFoldedPairAreTested) {

@@ -245,7 +245,7 @@ void read_shapes(const Node& node, const std::optional<Node>& objects, const std
     const auto read = [&](const Node& shape) {
         const size_t first = scene.shapes.size();
         shape.require("type").choice(READERS)(shape, known, shapes);
-        if (const auto catcher = shape.find("shadow_catcher")) shapes.make_catchers(*catcher, first);
+        shapes.read_seen(shape, first);
         progress("shapes", ++done, of);
     };
     for (const Node& object : members) {

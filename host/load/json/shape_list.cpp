@@ -75,16 +75,21 @@ float ShapeList::spread_of(const Node& node) {
     return spread ? glm::radians(read_number(*spread, scene_key("shape", "spread"))) : PI;
 }
 
-void ShapeList::make_catchers(const Node& node, size_t first) {
-    const Catcher catcher = node.choice(CATCHER_NAMES);
+void ShapeList::read_seen(const Node& node, size_t first) {
+    const auto kind = node.find("shadow_catcher");
+    const auto visible = node.find("visible_to_camera");
+    const Catcher catcher = kind ? kind->choice(CATCHER_NAMES) : Catcher::none;
+    const bool hidden = visible && !visible->boolean();
+    if (catcher == Catcher::none && !hidden) return;
     for (size_t i = first; i < scene().shapes.size(); ++i) {
         const Material material = scene().materials[scene().shapes[i].material];
         if (catches(catcher) && (scene().shapes[i].emission || is_unlit(material)))
-            node.fail(std::string("the shape ") + CATCHER_EMITS);
-        const auto [known, is_new] = catchers_.try_emplace({scene().shapes[i].material, catcher});
+            kind->fail(std::string("the shape ") + CATCHER_EMITS);
+        const auto [known, is_new] = seen_.try_emplace({scene().shapes[i].material, catcher, hidden});
         if (is_new) {
             known->second = add_material(material);
             scene().materials[known->second].catcher = catcher;
+            scene().materials[known->second].hidden = hidden;
         }
         scene().shapes[i].material = known->second;
     }

@@ -38,9 +38,9 @@ class ShapeList : public SceneBuilder {
     std::optional<Emission> emission_of(const Node& node);
     // The angle [rad] within which a shape's emission leaves.
     static float spread_of(const Node& node);
-    // Makes the shapes from that one on catchers, as the node of their key says. Throws Error if one emits
-    // light.
-    void make_catchers(const Node& node, size_t first);
+    // How the camera sees the shapes from that one on, which a shape's node describes: whether they are
+    // catchers, or hidden. Throws Error if a catcher emits light.
+    void read_seen(const Node& node, size_t first);
     // Adds a geometry of a space of its own, which the transform places. Returns the shape.
     const Shape& add_placed_by(const Appearance& appearance, const Geometry& own, const Transform& transform);
     // The transform of a shape's node; the identity if it has none.
@@ -52,7 +52,8 @@ class ShapeList : public SceneBuilder {
     std::filesystem::path folder_;
     std::map<std::string, uint32_t, std::less<>> indices_;  // Indices of the materials that the scene file
                                                             // defines.
-    std::map<std::pair<uint32_t, Catcher>, uint32_t> catchers_;  // Materials of catchers, by those without.
+    std::map<std::tuple<uint32_t, Catcher, bool>, uint32_t> seen_;  // Materials of catchers and what is
+                                                                    // hidden, by those of others.
 };
 
 // Returns a point in world space. Throws Error at the place of `node`, where it came from, if it lies too far

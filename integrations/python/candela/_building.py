@@ -27,7 +27,8 @@ class Building:
     def add_mesh(self, vertices: Any, faces: Any, *, name: Optional[str] = None, material: Optional[str] = None,
                  normals: Any = None, uvs: Any = None, uvs1: Any = None, colors: Any = None, emission: Any = None,
                  two_sided: Optional[bool] = None, spread: Optional[float] = None, transform: Any = None,
-                 transforms: Any = None, shadow_catcher: Optional[str] = None) -> str:
+                 transforms: Any = None, shadow_catcher: Optional[str] = None,
+                 visible_to_camera: Optional[bool] = None) -> str:
         """Adds an object of triangles; returns its name. It is read when the scene is next used: until then, its arrays must
         stay as they are.
 
@@ -36,7 +37,7 @@ class Building:
         coordinates, v upwards. colors: (N, 3) or (N, 4), linear, from 0 to 1; for materials with vertex_colors=True.
         emission: radiance [W/(m² sr)]. spread: the full angle around the normal in which it leaves [degrees]. transform:
         (4, 4), from the object's space to the world's. transforms: (K, 4, 4), of as many instances. shadow_catcher: "catch"
-        or "catch-reflections", if only shadows on it are to be seen.
+        or "catch-reflections", if only shadows on it are to be seen. visible_to_camera: False if camera rays pass it.
         """
         if transform is not None and transforms is not None:
             raise Error("give either transform or transforms", "usage", 2)
@@ -46,7 +47,8 @@ class Building:
             draft.meshes[chosen] = {"vertices": vertices, "faces": faces, "normals": normals, "uvs": uvs, "uvs1": uvs1,
                                     "colors": colors, "emission": emission, "two_sided": two_sided, "spread": spread,
                                     "transform": transform, "transforms": transforms,
-                                    "material": self._material_for(material, emission), "shadow_catcher": shadow_catcher}
+                                    "material": self._material_for(material, emission), "shadow_catcher": shadow_catcher,
+                                    "visible_to_camera": visible_to_camera}
             return chosen
 
     def _material_for(self, material: Optional[str], emission: Any) -> Optional[str]:

@@ -97,7 +97,7 @@ def mesh_json(convert: Converter, name: str, mesh: Dict[str, Any]) -> Dict[str, 
 
 def _mesh(convert: Converter, name: str, mesh: Dict[str, Any]) -> Dict[str, Any]:
     shape = {"type": "mesh", **mesh_json(convert, name, mesh)}
-    for key in ("material", "emission", "two_sided", "spread", "shadow_catcher"):
+    for key in ("material", "emission", "two_sided", "spread", "shadow_catcher", "visible_to_camera"):
         if mesh[key] is not None:
             shape[key] = convert(mesh[key], f"{name}.{key}")
     return shape

@@ -9,7 +9,7 @@ from ._draft import Draft
 from ._values import Texture
 
 _ARRAYS = ("vertices", "faces", "normals", "uvs", "uvs1", "colors")
-_FIXED = ("emission", "two_sided", "spread", "material", "shadow_catcher")
+_FIXED = ("emission", "two_sided", "spread", "material", "shadow_catcher", "visible_to_camera")
 
 
 def change_between(before: Draft, now: Draft) -> Optional[Dict[str, Any]]:

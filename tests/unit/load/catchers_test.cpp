@@ -58,6 +58,23 @@ TEST_F(CatchersTest, AShapeOfANativeSceneIsOneByItself) {
                          std::string("the shape ") + CATCHER_EMITS);
 }
 
+TEST_F(CatchersTest, AShapeOfANativeSceneMayBeHiddenFromTheCamera) {
+    const auto is_hidden = [](const Scene& scene, size_t shape) {
+        return scene.materials[scene.shapes[shape].material].hidden;
+    };
+    const Scene scene =
+        folder_.load(balls(R"(, "visible_to_camera": false)", R"(, "visible_to_camera": true)"));
+    EXPECT_TRUE(is_hidden(scene, 0));
+    EXPECT_FALSE(is_hidden(scene, 1));
+    EXPECT_FALSE(is_hidden(scene, 2));
+    EXPECT_FALSE(has_catchers(scene));
+    const Scene lamp = folder_.load(balls("", R"(, "visible_to_camera": false)"));
+    EXPECT_TRUE(is_hidden(lamp, 2));
+    EXPECT_TRUE(lamp.shapes[2].emission.has_value());
+    folder_.expect_error(balls(R"(, "visible_to_camera": @0)"),
+                         R"("visible_to_camera": expected true or false, found 0)");
+}
+
 TEST_F(CatchersTest, OptionsNameMaterials) {
     const Scene scene = load({.shadows = {"white"}});
     EXPECT_EQ(catcher_of(scene, 0), Catcher::shadows);

@@ -128,9 +128,10 @@ TEST(SceneShapes, CheckSpheres) {
     folder.expect_error(sphere("\"radius\": @1e-40"),
                         "\"radius\": expected a number of at least 1.2e-38, found 1e-40");
     folder.expect_error(sphere("\"center\": @[0, 0]"), "\"center\": expected three numbers, found [0, 0]");
-    folder.expect_error(sphere("@\"centre\": [0, 0, 0]"),
-                        "unknown key \"centre\" (did you mean \"center\"? known: type, center, radius, "
-                        "cone, name, material, emission, two_sided, spread, shadow_catcher, transform)");
+    folder.expect_error(
+        sphere("@\"centre\": [0, 0, 0]"),
+        "unknown key \"centre\" (did you mean \"center\"? known: type, center, radius, "
+        "cone, name, material, emission, two_sided, spread, shadow_catcher, visible_to_camera, transform)");
     const std::string uneven =
         "a sphere may only be moved, turned, mirrored and scaled evenly; use a mesh instead";
     folder.expect_error(sphere(R"("transform": @[{"scale": [1, 1, 2]}])"), uneven);

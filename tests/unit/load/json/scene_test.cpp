@@ -156,7 +156,7 @@ TEST(Scene, SaysWhichKeysItKnows) {
     folder.expect_error(
         scene_of(R"({"type": "box", "min": [0, 0, 0], "max": [1, 1, 1], @"colour": "white"})"),
         "unknown key \"colour\" (known: type, min, max, name, material, emission, two_sided, spread, "
-        "shadow_catcher, transform)");
+        "shadow_catcher, visible_to_camera, transform)");
     folder.expect_error("@{\"shapes\": []}", "the key \"cameras\" is missing here; add it");
     folder.expect_error("@[]", "the scene: expected an object { ... }, found []");
 }
