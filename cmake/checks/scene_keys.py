@@ -45,7 +45,7 @@ PARTS = {"cone", "absorption", "scattering", "subsurface", "normal_map", "bump_m
 COMMON = {"material": {"normal_map": "normalMap", "bump_map": "bumpMap", "opacity": "opacity",
                        "vertex_colors": "vertexColors"},
           "shape": {key: f"shape_{key}" for key in ("name", "material", "emission", "two_sided", "spread",
-                                                         "shadow_catcher", "transform")},
+                                                         "shadow_catcher", "visible_to_camera", "transform")},
           "light": {"name": "light_name"}}
 # What the list of principled values does not say.
 TEXTURED = {"color": "texturedReflectance", "radiance": "texturedRadiance", "weight": "texturedWeight",
