@@ -9,7 +9,7 @@ version=0.1.0a2
 archive=opengl_basisu-$version.tar.gz
 sha256=7364dc63ac0e65f1d32306236514b834e06a22081d1019e8241d8f0a2a6cfeb5
 folder=build/basisu
-[ ! -f "$folder/complete" ] || exit 0
+[ "$(cat "$folder/complete" 2>/dev/null)" != "$sha256" ] || exit 0
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -29,5 +29,5 @@ mv "$work/opengl_basisu-$version/tests/fixtures" "$folder/"
     printf '\nThe decoder of Zstandard in it:\n\n'
     cat "$folder/zstd/LICENSE"
 } >"$folder/copyright"
-touch "$folder/complete"
+echo "$sha256" >"$folder/complete"
 echo "Basis Universal is in $folder; configure and build again."

@@ -6,6 +6,7 @@
 #ifdef CANDELA_BASISU
 
 #include <bit>
+#include <cstdint>
 #include <cstring>
 #include <string>
 
@@ -133,9 +134,8 @@ bool reads_ktx_texels() {
 
 TexelImage decode_ktx_texels(const TexelSource& source) {
     source.fail(
-        "it is a KTX 2 texture, which this program was built without; run sh cmake/basisu.sh and build it "
-        "again, "
-        "or convert the texture to " +
+        "this program is built without a decoder of KTX 2: run sh cmake/basisu.sh and build it again, or "
+        "convert the texture to " +
         std::string(source.limits.formats));
 }
 

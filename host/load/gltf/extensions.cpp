@@ -14,9 +14,6 @@
 namespace candela::gltf {
 namespace {
 
-// Read if candela is built with a decoder.
-constexpr std::string_view KTX_IMAGES = "KHR_texture_basisu";
-
 constexpr std::array<std::string_view, 27> READ{"EXT_lights_image_based",
                                                 "EXT_mesh_gpu_instancing",
                                                 "EXT_meshopt_compression",

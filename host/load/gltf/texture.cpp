@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "image/texel_io.h"
+#include "load/gltf/extensions.h"
 #include "load/gltf/uri.h"
 #include "load/gltf/values.h"
 #include "scene/images.h"
@@ -21,8 +22,6 @@ constexpr uint32_t CLAMP_TO_BORDER = 33069;
 constexpr uint32_t CLAMP_TO_EDGE = 33071;
 constexpr uint32_t MIRRORED_REPEAT = 33648;
 constexpr uint32_t REPEAT = 10497;
-
-constexpr std::string_view KTX_IMAGES = "KHR_texture_basisu";
 
 Wrap read_wrap_mode(File& file, const Node& sampler, std::string_view key) {
     const auto node = sampler.find(key);
@@ -68,19 +67,19 @@ void read_transform_of_uvs(const Node& transform, Texture& texture) {
 
 // The index of a texture's image; nothing if no image can be read.
 std::optional<Node> image_of(const Node& texture) {
-    for (const std::string_view name : {std::string_view("EXT_texture_webp"), KTX_IMAGES}) {
-        if (name == KTX_IMAGES && !reads_ktx_texels()) continue;
-        const auto extension = extension_of(texture, name);
-        const auto source = extension ? extension->find("source") : std::nullopt;
-        if (source) return source;
-    }
-    return texture.find("source");
+    const auto source_of = [&](std::string_view extension) {
+        const auto found = extension_of(texture, extension);
+        return found ? found->find("source") : std::nullopt;
+    };
+    if (const auto webp = source_of("EXT_texture_webp")) return webp;
+    const auto ktx = reads_ktx_texels() ? source_of(KTX_IMAGES) : std::nullopt;
+    return ktx ? ktx : texture.find("source");
 }
 
 // Why there is none.
 std::string reason_without_image(const Node& texture) {
     for (const std::string_view name :
-         {KTX_IMAGES, std::string_view("EXT_texture_avif"), std::string_view("MSFT_texture_dds")}) {
+         std::initializer_list<std::string_view>{KTX_IMAGES, "EXT_texture_avif", "MSFT_texture_dds"}) {
         if (extension_of(texture, name))
             return concat("the texture has an image of ", name, " only, which is not read");
     }

@@ -78,18 +78,19 @@ float ShapeList::spread_of(const Node& node) {
 void ShapeList::read_seen(const Node& node, size_t first) {
     const auto kind = node.find("shadow_catcher");
     const auto visible = node.find("visible_to_camera");
-    const Catcher catcher = kind ? kind->choice(CATCHER_NAMES) : Catcher::none;
-    const bool hidden = visible && !visible->boolean();
-    if (catcher == Catcher::none && !hidden) return;
+    if (!kind && !visible) return;
+    const auto catcher = kind ? std::optional(kind->choice(CATCHER_NAMES)) : std::nullopt;
+    const auto hidden = visible ? std::optional(!visible->boolean()) : std::nullopt;
     for (size_t i = first; i < scene().shapes.size(); ++i) {
         const Material material = scene().materials[scene().shapes[i].material];
-        if (catches(catcher) && (scene().shapes[i].emission || is_unlit(material)))
+        if (catcher && catches(*catcher) && (scene().shapes[i].emission || is_unlit(material)))
             kind->fail(std::string("the shape ") + CATCHER_EMITS);
         const auto [known, is_new] = seen_.try_emplace({scene().shapes[i].material, catcher, hidden});
         if (is_new) {
             known->second = add_material(material);
-            scene().materials[known->second].catcher = catcher;
-            scene().materials[known->second].hidden = hidden;
+            Material& seen = scene().materials[known->second];
+            seen.catcher = catcher.value_or(material.catcher);
+            seen.hidden = hidden.value_or(material.hidden);
         }
         scene().shapes[i].material = known->second;
     }

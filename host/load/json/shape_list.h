@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -52,8 +53,8 @@ class ShapeList : public SceneBuilder {
     std::filesystem::path folder_;
     std::map<std::string, uint32_t, std::less<>> indices_;  // Indices of the materials that the scene file
                                                             // defines.
-    std::map<std::tuple<uint32_t, Catcher, bool>, uint32_t> seen_;  // Materials of catchers and what is
-                                                                    // hidden, by those of others.
+    // Materials of catchers and of what is hidden, by those of others and what a shape says.
+    std::map<std::tuple<uint32_t, std::optional<Catcher>, std::optional<bool>>, uint32_t> seen_;
 };
 
 // Returns a point in world space. Throws Error at the place of `node`, where it came from, if it lies too far

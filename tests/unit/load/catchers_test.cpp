@@ -75,6 +75,22 @@ TEST_F(CatchersTest, AShapeOfANativeSceneMayBeHiddenFromTheCamera) {
                          R"("visible_to_camera": expected true or false, found 0)");
 }
 
+// What an instance does not say is as in its object.
+TEST_F(CatchersTest, InstancesAreSeenAsTheirObjects) {
+    const Scene scene = folder_.load(
+        R"({ "cameras": { "main": { "position": [0, 0, 9], "look_at": [0, 0, 0], "vertical_fov": 40 } },
+             "materials": { "white": { "type": "diffuse", "reflectance": 1 } },
+             "objects": { "sheet": [ { "type": "mesh", "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
+                                       "triangles": [[0, 1, 2]], "material": "white", "visible_to_camera": false } ] },
+             "shapes": [ { "type": "instance", "object": "sheet" },
+                         { "type": "instance", "object": "sheet", "visible_to_camera": true },
+                         { "type": "instance", "object": "sheet", "shadow_catcher": "catch" } ] })");
+    const std::vector<bool> hidden{true, false, true};
+    for (size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(scene.materials[scene.shapes.at(i).material].hidden, hidden[i]) << i;
+    EXPECT_EQ(catcher_of(scene, 2), Catcher::shadows);
+}
+
 TEST_F(CatchersTest, OptionsNameMaterials) {
     const Scene scene = load({.shadows = {"white"}});
     EXPECT_EQ(catcher_of(scene, 0), Catcher::shadows);
