@@ -73,8 +73,10 @@ install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR} $
 install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} ${to_debian})
 file(READ ${CMAKE_SOURCE_DIR}/LICENSE copyright)
 if(TARGET basisu)
-    file(READ ${CANDELA_BASISU}/copyright of_basisu)
-    string(APPEND copyright "\nThe program contains a decoder of textures:\n\n${of_basisu}")
+    file(READ ${CANDELA_BASISU}/NOTICE notice)
+    file(READ ${CANDELA_BASISU}/zstd/LICENSE of_zstandard)
+    string(APPEND copyright "\nThe program contains a decoder of textures, under the Apache licence 2.0, which is in "
+        "/usr/share/common-licenses/Apache-2.0:\n\n${notice}\nand in it, one of Zstandard:\n\n${of_zstandard}")
 endif()
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/copyright "${copyright}")
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} ${to_debian})

@@ -90,7 +90,7 @@ void drop_alpha(TexelImage& image) {
 
 TexelImage decode_ktx_texels(const TexelSource& source) {
     check_header(source);
-    [[maybe_unused]] static const bool TABLES_ARE_MADE = (basist::basisu_transcoder_init(), true);
+    [[maybe_unused]] static const bool tables_are_made = (basist::basisu_transcoder_init(), true);
     // The decoder reads blocks where they are, as words.
     std::string copy;
     const char* bytes = source.bytes.data();
