@@ -121,6 +121,8 @@ struct Material {
         false;  // The colours of vertices are factors of the model's first colour and of opacity.
     Catcher catcher = Catcher::none;
     bool hidden = false;  // From the camera: its rays pass. Light and reflections meet the surface.
+    // The material that this one repeats, for shapes that the camera sees in another way.
+    std::optional<uint32_t> original{};
 
     bool operator==(const Material&) const = default;
 };

@@ -36,7 +36,7 @@ Material with_images(const Material& before, const Scene& scene, Scene& change) 
     return material;
 }
 
-// Reads materials into `change`, which has read nothing else.
+// Reads materials into `change`, which has read nothing else; also for those that repeat one of them.
 std::vector<MaterialChange> read_materials(const Node& materials, const Scene& scene,
                                            const std::filesystem::path& folder, Scene& change) {
     std::vector<std::string> names;
@@ -46,12 +46,21 @@ std::vector<MaterialChange> read_materials(const Node& materials, const Scene& s
     for (const Node& node : materials.members()) {
         const auto found = std::ranges::find(names, node.key());
         if (found == names.end()) node.fail_unknown("material", node.key(), names, "defined");
-        changes.push_back({node.place(), size_t(found - names.begin())});
-        const Material& before = scene.materials[changes.back().index];
-        change.materials.push_back(
-            node.find("type")
-                ? read_material(node, {folder, change})
-                : read_changed_material(node, {folder, change}, with_images(before, scene, change)));
+        const auto index = size_t(found - names.begin());
+        const Material now = node.find("type")
+                                 ? read_material(node, {folder, change})
+                                 : read_changed_material(node, {folder, change},
+                                                         with_images(scene.materials[index], scene, change));
+        for (size_t i = index; i < scene.materials.size(); ++i) {
+            const Material& before = scene.materials[i];
+            if (i != index && before.original != index) continue;
+            changes.push_back({node.place(), i});
+            Material& made = change.materials.emplace_back(now);
+            made.name = before.name;
+            made.catcher = before.catcher;
+            made.hidden = before.hidden;
+            made.original = before.original;
+        }
     }
     return changes;
 }

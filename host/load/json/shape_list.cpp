@@ -89,6 +89,7 @@ void ShapeList::read_seen(const Node& node, size_t first) {
         if (is_new) {
             known->second = add_material(material);
             Material& seen = scene().materials[known->second];
+            seen.original = material.original.value_or(scene().shapes[i].material);
             seen.catcher = catcher.value_or(material.catcher);
             seen.hidden = hidden.value_or(material.hidden);
         }

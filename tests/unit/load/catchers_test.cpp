@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "load/json/change.h"
 #include "unit/load/scene_fixture.h"
 #include "views/bodies.h"
 
@@ -73,6 +74,26 @@ TEST_F(CatchersTest, AShapeOfANativeSceneMayBeHiddenFromTheCamera) {
     EXPECT_TRUE(lamp.shapes[2].emission.has_value());
     folder_.expect_error(balls(R"(, "visible_to_camera": @0)"),
                          R"("visible_to_camera": expected true or false, found 0)");
+}
+
+// A change of a material also reaches the shapes of it that the camera sees in another way, and leaves that
+// as it is.
+TEST_F(CatchersTest, ChangesReachCatchersAndWhatIsHidden) {
+    Scene scene = folder_.load(balls(R"(, "shadow_catcher": "catch")", R"(, "visible_to_camera": false)"));
+    SceneEdits edits;
+    change_scene(scene, R"({ "materials": { "white": { "type": "diffuse", "reflectance": 0.25 },
+                                             "lit": { "emission": 3 } } })",
+                 "change", folder_.path(), edits);
+    const auto reflectance = [&](size_t shape) {
+        return std::get<DiffuseMaterial>(scene.materials[scene.shapes[shape].material].model)
+            .reflectance.factor.x;
+    };
+    EXPECT_EQ(reflectance(0), 0.25f);
+    EXPECT_EQ(reflectance(1), 0.25f);
+    EXPECT_EQ(catcher_of(scene, 0), Catcher::shadows);
+    EXPECT_EQ(catcher_of(scene, 1), Catcher::none);
+    EXPECT_EQ(scene.shapes[2].emission->radiance.factor, vec3(3.0f));
+    EXPECT_TRUE(scene.materials[scene.shapes[2].material].hidden);
 }
 
 // What an instance does not say is as in its object.
