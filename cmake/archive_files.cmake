@@ -119,15 +119,12 @@ endif()
 # Which is of no package of Debian (cmake/basisu.sh).
 if(basisu)
     file(COPY_FILE ${basisu}/copyright ${root}/${documents}/licenses/basisu.txt)
-    file(STRINGS ${basisu}/VERSION tag REGEX "^tag v")
-    string(REPLACE "tag " "" tag "${tag}")
-    string(REGEX REPLACE "^v([0-9]+)_" "\\1." basisu_version "${tag}")
     string(APPEND sbom "
 PackageName: basisu
 SPDXID: SPDXRef-basisu
 PackageVersion: ${basisu_version}
 PackageSupplier: Organization: Binomial LLC
-PackageDownloadLocation: git+https://github.com/BinomialLLC/basis_universal@${tag}
+PackageDownloadLocation: git+https://github.com/BinomialLLC/basis_universal@${basisu_tag}
 FilesAnalyzed: false
 PackageLicenseConcluded: Apache-2.0 AND BSD-3-Clause
 PackageLicenseDeclared: Apache-2.0 AND BSD-3-Clause

@@ -50,7 +50,9 @@ set(library_folder ${CMAKE_INSTALL_LIBDIR})
 set(architecture ${CMAKE_LIBRARY_ARCHITECTURE})
 set(windows ${WIN32})
 set(built_from_source ${CANDELA_LICENSES})
-set(basisu $<$<TARGET_EXISTS:basisu>:${CANDELA_BASISU}>)")
+set(basisu $<$<TARGET_EXISTS:basisu>:${CANDELA_BASISU}>)
+set(basisu_tag \"${CANDELA_BASISU_TAG}\")
+set(basisu_version \"${CANDELA_BASISU_VERSION}\")")
 install(SCRIPT ${CMAKE_SOURCE_DIR}/cmake/archive_files.cmake)
 
 set(CPACK_PACKAGE_CONTACT "The candela contributors <maintainers@candela.invalid>" CACHE STRING
