@@ -16,6 +16,11 @@ stage() {
     running=
 }
 
+# on_this_system COMMAND...: runs it; its exit code 3 says that it is for another system.
+on_this_system() {
+    "$@" || [ $? -eq 3 ]
+}
+
 report() {
     printf '%s\n' "${took[@]}"
     [ -z "$running" ] || echo "$running failed after $((SECONDS - began)) s"
