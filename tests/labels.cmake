@@ -5,7 +5,7 @@
 set(slow_render GlossyEstimatorTest PrincipledPictureTest.EstimatorsAgree TexturedTest.EstimatorsAgree
     NormalMapTest.EstimatorsAgree DiffuseTransmissionTest.EstimatorsAgree SamplerErrorTest.SobolIsNowhere
     ScatteringTest.EstimatorsAgree ScatteringTest.ChoicesOfLightsAgree ScatteringTest.RouletteInHaze
-    DeepMediumTest.ReflectsWhatChandrasekharSaysTo)
+    DeepMediumTest.ReflectsWhatChandrasekharSaysTo SharedKernelTest.TheirPictures SharedKernelTest.Others)
 # quick: the most telling tests, all together under a minute on two cores; here by what their names begin with.
 set(quick_unit ".")
 set(quick_vk ".")
