@@ -1,6 +1,7 @@
-# Sourced by libcxx.sh, wheel.sh and windows.sh: builds libraries from Debian's sources, in $folder.
+# Sourced by libcxx.sh, wheel.sh and windows.sh: builds libraries from Debian's sources, in $folder, of
+# the build type $type or else Release.
 # shellcheck shell=sh
-# shellcheck disable=SC2154  # The scripts that source this one set $folder.
+# shellcheck disable=SC2154  # The scripts that source this one set $folder, and may set $type.
 
 # source_of NAME...: downloads and unpacks Debian's sources, with lists of apt's own.
 source_of() {
@@ -30,7 +31,7 @@ source_of() {
 archive() {
     name=$1 root=$2
     shift 2
-    cmake -G Ninja -S "$folder/source/$name" -B "$folder/source/$name/build" -DCMAKE_BUILD_TYPE=Release \
+    cmake -G Ninja -S "$folder/source/$name" -B "$folder/source/$name/build" "-DCMAKE_BUILD_TYPE=${type:-Release}" \
         -DBUILD_SHARED_LIBS=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DBUILD_TESTING=OFF -DZLIB_USE_STATIC_LIBS=ON \
         -DCMAKE_PREFIX_PATH="$root" -DCMAKE_INSTALL_PREFIX="$root" --no-warn-unused-cli "$@" >"$folder/$name.log"
     cmake --build "$folder/source/$name/build" --target install >>"$folder/$name.log"

@@ -3,8 +3,14 @@
 # the archive into a folder whose name has a blank and letters beyond ASCII, and runs the self-test, the gallery, whose
 # pictures must have the bits of those of build/release/candela, the unit tests, those tests of the command line that ask
 # for nothing that only Linux has, and what a Python on Linux asks by the protocol. Needs the tests (sh cmake/test.sh).
-# usage: sh cmake/try_windows.sh [OPTION OF CMAKE...]
+# usage: sh cmake/try_windows.sh [OPTION OF CMAKE...], or: sh cmake/try_windows.sh quick [OPTION OF CMAKE...]
+# quick: without optimization, and without the unit tests and most of those of the command line
 set -eu
+quick=
+if [ "${1-}" = quick ]; then
+    quick=quick
+    shift
+fi
 cd "$(dirname "$0")/.."
 if ! grep -qs '^VERSION_CODENAME=bookworm$' /etc/os-release || [ "$(uname -m)" != x86_64 ]; then
     echo "Nothing was tried: this needs Debian 12 on x86-64, and this is another system."
@@ -12,16 +18,18 @@ if ! grep -qs '^VERSION_CODENAME=bookworm$' /etc/os-release || [ "$(uname -m)" !
 fi
 linux=$PWD/build/release/candela
 [ -x "$linux" ] || { echo "There is no $linux; run sh cmake/test.sh first." >&2; exit 1; }
-sh cmake/windows.sh "$@"
+sh cmake/windows.sh $quick "$@"
 . cmake/sources.sh
-folder=$PWD/build/windows
-root=$folder/root
-if [ ! -f "$root/lib/libgtest.a" ]; then
-    cp -r /usr/src/googletest "$folder/source/"
-    archive googletest "$root" "-DCMAKE_TOOLCHAIN_FILE=$PWD/cmake/mingw.cmake"
+if [ -z "$quick" ]; then
+    folder=$PWD/build/windows
+    root=$folder/root
+    if [ ! -f "$root/lib/libgtest.a" ]; then
+        cp -r /usr/src/googletest "$folder/source/"
+        archive googletest "$root" "-DCMAKE_TOOLCHAIN_FILE=$PWD/cmake/mingw.cmake"
+    fi
+    cmake --preset windows -DCANDELA_VIEW=ON -DCANDELA_TESTS=ON
+    cmake --build --preset windows --target unit_tests
 fi
-cmake --preset windows -DCANDELA_VIEW=ON -DCANDELA_TESTS=ON
-cmake --build --preset windows --target unit_tests
 folder=$PWD/build/windows/tried
 place="$folder/Zoë's pictures"
 rm -rf "$folder"
@@ -50,6 +58,15 @@ chmod +x "$folder/candela"
 "$folder/candela" devices
 "$folder/candela" selftest --effort quick
 sh cmake/same_pictures.sh "$folder/candela"
+# tests_of_the_command_line FILTER: by the program of Linux, which calls that of Windows.
+tests_of_the_command_line() {
+    CANDELA_TESTED_PROGRAM=$folder/candela build/release/tests/cli_tests --gtest_brief=1 "--gtest_filter=$1"
+}
+/usr/bin/python3 tests/python/windows_test.py "$folder/candela" "$linux"
+if [ -n "$quick" ]; then
+    tests_of_the_command_line 'Usage.*:Compare.*:Info.*:MergeTest.*'
+    exit
+fi
 # Without what asks for symbolic links, which the compiler's library lacks, or for a clock of CPU time finer than 1/64 s.
 lacking='BenchBuild.MeasuresSpeed*:GltfFileTest.NamesNoFileOutside*:ObjTextures.ImagesOutOfReach*'
 "$wine" build/windows/release/tests/unit_tests.exe --gtest_brief=1 "--gtest_filter=-$lacking"
@@ -59,5 +76,4 @@ some='Usage.*:Compare.*:RenderOptionsTest.*:RenderFiles.*:LightingOptionsTest.*:
 some=$some':Batch.*:BatchOptions.*:Cameras.*:CheckpointTest.*:Frames.*:Ids.*:Info.*:Instances.*:MergeTest.*:MotionLayer.*'
 some=$some':PlotTest.*-RenderFiles.AttributesTell*:RenderFiles.ReportHas*:RenderFiles.CompiledKernels*:Batch.GoesOn*'
 some=$some':Batch.Counts*:Batch.SaysOnce*:CheckpointTest.Signals*:CheckpointTest.AFullDisk*:PlotTest.ASinglePoint*'
-CANDELA_TESTED_PROGRAM=$folder/candela build/release/tests/cli_tests --gtest_brief=1 "--gtest_filter=$some"
-/usr/bin/python3 tests/python/windows_test.py "$folder/candela" "$linux"
+tests_of_the_command_line "$some"
