@@ -106,7 +106,7 @@ std::vector<double> reference_samples(const std::string& file, uvec2 size) {
     jpeg_error_mgr errors{};
     jpeg.err = jpeg_std_error(&errors);
     jpeg_create_decompress(&jpeg);
-    jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(file.data()), file.size());
+    jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(file.data()), uint32_t(file.size()));
     jpeg_read_header(&jpeg, TRUE);
     jvirt_barray_ptr* const arrays = jpeg_read_coefficients(&jpeg);
     std::vector<double> samples;
