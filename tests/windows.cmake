@@ -15,7 +15,8 @@ add_library(test_support STATIC ${support})
 target_link_libraries(test_support PUBLIC candela_cli kernel_bounds draco meshoptimizer GTest::gtest_main)
 target_include_directories(test_support PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
 target_compile_definitions(test_support PUBLIC CANDELA_SCENES="${CMAKE_SOURCE_DIR}/scenes"
-    CANDELA_TANGENTS="${CMAKE_CURRENT_SOURCE_DIR}/unit/scene/tangents" $<$<BOOL:${CANDELA_HAS_VIEW}>:CANDELA_VIEW>)
+    CANDELA_TANGENTS="${CMAKE_CURRENT_SOURCE_DIR}/unit/scene/tangents" $<$<BOOL:${CANDELA_HAS_VIEW}>:CANDELA_VIEW>
+    $<$<TARGET_EXISTS:basisu>:CANDELA_BASISU_FILES="${CANDELA_BASISU}/fixtures">)
 target_compile_options(test_support PUBLIC ${test_flags})
 add_executable(unit_tests ${sources})
 target_link_libraries(unit_tests PRIVATE test_support $<$<BOOL:${CANDELA_HAS_VIEW}>:imgui>)
