@@ -13,7 +13,7 @@ folder=build/basisu
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-python3 -m pip download --quiet --disable-pip-version-check --no-deps --no-binary :all: --dest "$work" \
+python3 -m pip download --quiet --disable-pip-version-check --no-deps --no-binary opengl-basisu --dest "$work" \
     "opengl-basisu==$version"
 if ! echo "$sha256  $work/$archive" | sha256sum --check --status; then
     echo "$archive is not the file that candela was tested with: its SHA-256 differs from $sha256." >&2
