@@ -40,7 +40,10 @@ program=$(echo "$place"/candela-*/candela.exe)
 export WINEPREFIX="$folder/wine" WINEDEBUG=-all
 # Wine's Vulkan needs a display.
 Xvfb -displayfd 3 -screen 0 1280x800x24 3>"$folder/display" 2>"$folder/xvfb.log" &
-trap 'kill $!' EXIT
+# Without this, Debian's ends with the last program, and takes along one that has just begun.
+mkdir "$WINEPREFIX"
+/usr/lib/wine/wineserver -p
+trap '/usr/lib/wine/wineserver -k; kill $!' EXIT
 while [ ! -s "$folder/display" ]; do sleep 0.1; done
 DISPLAY=:$(cat "$folder/display")
 export DISPLAY
