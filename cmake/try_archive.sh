@@ -33,6 +33,7 @@ cmp "$archive" "$folder"/two/candela-*.tar.gz
 if [ "${1:-}" = again ]; then
     mkdir "$folder/sources"
     git ls-files -z | xargs -0 cp --parents -t "$folder/sources"
+    [ ! -d build/basisu ] || cp -r --parents build/basisu "$folder/sources"
     cmake -S "$folder/sources" --preset release -DCANDELA_VIEW=OFF >"$folder/build.log"
     cmake --build "$folder/sources/build/release" >>"$folder/build.log" || { tail -n 40 "$folder/build.log"; exit 1; }
     pack "$folder/sources/build/release" "$folder/three"
