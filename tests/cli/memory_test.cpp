@@ -5,7 +5,7 @@
 
 #include "cli/cli_fixture.h"
 
-#ifndef __SANITIZE_ADDRESS__
+#ifndef CANDELA_SANITIZE
 
 namespace candela {
 namespace {

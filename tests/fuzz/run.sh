@@ -13,7 +13,7 @@ case ${1:-} in -*) effort=$1; shift ;; esac
 
 if ! command -v clang++ >/dev/null; then
     . cmake/setup.sh
-    install_packages render test fuzz
+    install_packages render test
 fi
 sh cmake/basisu.sh
 cmake --preset fuzz >/dev/null

@@ -10,7 +10,7 @@
 #include "unit/image/image_fixture.h"
 #include "unit/image/texel_fixture.h"
 
-#ifndef __SANITIZE_ADDRESS__
+#ifndef CANDELA_SANITIZE
 
 namespace candela {
 namespace {
@@ -91,4 +91,4 @@ TEST(TexelMemory, ABlackImageOfAFewBytesIsRead) {
 }  // namespace
 }  // namespace candela
 
-#endif  // __SANITIZE_ADDRESS__
+#endif  // CANDELA_SANITIZE
