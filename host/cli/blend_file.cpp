@@ -22,7 +22,8 @@ namespace {
 constexpr const char* VARIABLE = "CANDELA_BLENDER";
 
 // What Blender runs, in the file, or a Python that opens it first.
-constexpr const char* SCRIPT = R"(import sys
+constexpr const char* SCRIPT = R"(import os
+import sys
 import bpy
 import addon_utils
 *source, target = sys.argv[sys.argv.index("--") + 1:]
@@ -31,6 +32,8 @@ if source:
 addon_utils.enable("io_scene_gltf2")
 bpy.ops.export_scene.gltf(filepath=target, export_format="GLB", export_apply=True, export_cameras=True,
                           export_lights=True, export_animations=False)
+if source:
+    os._exit(0)  # The end of Python crashes the module of Blender 4.2.
 )";
 
 // The call of the program that exports a file.
