@@ -10,9 +10,9 @@ def uid_of(block):
 
 
 class _Mesh:
-    def __init__(self, pointer, second_uv, sources, parts):
+    def __init__(self, pointer, needs, sources, parts):
         self.pointer = pointer
-        self.second_uv = second_uv
+        self.needs = needs
         self.sources = sources
         self.parts = parts
 
@@ -36,35 +36,38 @@ class Cache:
             if update.is_updated_geometry:
                 self._changed.add(uid_of(update.id))
             if kind == "Material":
-                self._materials.pop(uid_of(update.id), None)
+                changed = uid_of(update.id)
+                self._materials = {key: made for key, made in self._materials.items() if key[0] != changed}
             elif kind == "Image" or (kind.endswith("NodeTree") and not update.id.is_embedded_data):
                 self._materials.clear()  # They may be in any.
 
     def end(self):
         """Forgets what was not used since begin()."""
-        for known in (self._meshes, self._names):
+        for known in (self._meshes, self._materials, self._names):
             for key in [key for key in known if key not in self._used]:
                 del known[key]
 
-    def parts(self, key, pointer, second_uv, sources, read):
+    def parts(self, key, pointer, needs, sources, read):
         """The parts of a mesh: those that are known, or what read() gives. key: whose it is; pointer: where Blender has it;
-        sources: the numbers of the data-blocks that it is made of."""
+        needs: what its materials ask of it; sources: the numbers of the data-blocks that it is made of."""
         self._used.add(key)
         known = self._meshes.get(key)
-        if known is not None and known.pointer == pointer and known.second_uv == second_uv and \
+        if known is not None and known.pointer == pointer and known.needs == needs and \
                 not (known.sources | sources) & self._changed:
             return known.parts
         parts = read()
         if known is not None and _are_same(known.parts, parts):
             parts = known.parts
-        self._meshes[key] = _Mesh(pointer, second_uv, sources, parts)
+        self._meshes[key] = _Mesh(pointer, needs, sources, parts)
         return parts
 
-    def material(self, uid, read):
-        """What candela makes of a material: what is known, or what read() gives."""
-        if uid not in self._materials:
-            self._materials[uid] = read()
-        return self._materials[uid]
+    def material(self, key, read, points=None):
+        """What candela makes of a material: what is known, or what read() gives. key: its number first; points: where on a
+        mesh it was read."""
+        self._used.add(key)
+        if key not in self._materials or self._materials[key][0] is not points:
+            self._materials[key] = (points, read())
+        return self._materials[key][1]
 
     def name(self, kind, key, wanted):
         """What candela calls a thing of a kind: the name that it has, or that which is wanted, or one like it."""
@@ -80,5 +83,5 @@ class Cache:
 
 def _are_same(before, now):
     return len(before) == len(now) and all(
-        a.slot == b.slot and a.arrays.keys() == b.arrays.keys() and
+        a.slot == b.slot and not a.points and not b.points and a.arrays.keys() == b.arrays.keys() and
         all(numpy.array_equal(array, b.arrays[key]) for key, array in a.arrays.items()) for a, b in zip(before, now))

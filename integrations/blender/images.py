@@ -47,3 +47,32 @@ def pixels_of(image, notices):
     if is_srgb(image, notices):
         values[..., :3] = srgb_to_linear(values[..., :3])
     return values
+
+
+def looked_up(pixels, place, extension, is_nearest):
+    """(..., 4): the values of an image (H, W, 4), rows from the top, at texture coordinates (..., 2 or more). extension: what
+    Blender calls the way in which it goes on beyond its edges."""
+    height, width = pixels.shape[:2]
+    x, y = place[..., 0] * width - 0.5, (1 - place[..., 1]) * height - 0.5
+
+    def at(column, row):
+        found = []
+        for index, size in ((column, width), (row, height)):
+            if extension == "REPEAT":
+                index = index % size
+            elif extension == "MIRROR":
+                index = index % (2 * size)
+                index = numpy.minimum(index, 2 * size - 1 - index)
+            found.append(numpy.clip(index, 0, size - 1))
+        return pixels[found[1], found[0]]
+    if is_nearest:
+        values = at(numpy.floor(x + 0.5).astype(int), numpy.floor(y + 0.5).astype(int))
+    else:
+        left, top = numpy.floor(x).astype(int), numpy.floor(y).astype(int)
+        u, v = (x - left)[..., None], (y - top)[..., None]
+        values = (at(left, top) * (1 - u) + at(left + 1, top) * u) * (1 - v) + \
+            (at(left, top + 1) * (1 - u) + at(left + 1, top + 1) * u) * v
+    if extension == "CLIP":
+        inside = ((place[..., :2] >= 0) & (place[..., :2] <= 1)).all(-1)
+        values = numpy.where(inside[..., None], values, 0)
+    return values.astype(numpy.float32)

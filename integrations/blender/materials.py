@@ -5,27 +5,31 @@ import math
 import numpy
 
 from .candela import Texture
-from .nodes import Reader, Value, as_codes, gray
+from .nodes import IN_SPACE, NeedsPoints, Reader, Value, as_codes, gray
+from .notices import Notices
 from .trees import tree_of
 
 _BLACK = {"base_color": 0.0, "specular": 0.0}
 
 
 class Material:
-    """Values of a candela material. `uv` is the name of the second texture coordinates that its images need."""
+    """Values of a candela material. `uv` is the name of the second texture coordinates that its images need; `in_space`
+    whether it has textures in space, and so no values without the points of a mesh."""
 
-    def __init__(self):
+    def __init__(self, in_space=False):
         self.type = "principled"
         self.values = {}
         self.uv = None
+        self.in_space = in_space
 
 
 class _Writer:
     """Makes a Material of a node tree."""
 
-    def __init__(self, material, notices):
+    def __init__(self, material, notices, points):
         self.place = f'Material "{material.name}"'
         self.notices = notices
+        self.points = points
         self.reader = Reader(self.place, notices)
         self.made = Material()
         self.single_sided = material.use_backface_culling
@@ -37,8 +41,21 @@ class _Writer:
         """The Value of the first of these inputs that the node has; None without any."""
         for name in names:
             if name in node.inputs:
-                return self.reader.read(node.inputs[name])
+                return self.read_socket(node.inputs[name])
         return None
+
+    def read_socket(self, socket):
+        """The Value of an input: images as they are, and only what needs it at the points of the mesh."""
+        try:
+            return self.reader.read(socket)
+        except NeedsPoints:
+            if self.points is None:
+                raise
+        self.reader.points = self.points
+        try:
+            return self.reader.read(socket)
+        finally:
+            self.reader.points = None
 
     def number(self, node, name, default=0.0):
         """A number that candela wants constant."""
@@ -115,8 +132,8 @@ class _Writer:
     def _set_normal_map(self, node):
         color = self.read(node, "Color")
         strength = self.number(node, "Strength", 1.0)
-        if node.space != "TANGENT":
-            self.notice(node, "candela knows normal maps in tangent space only; it is left out")
+        if node.space != "TANGENT" or (color.mapping is not None and color.mapping.uv == IN_SPACE):
+            self.notice(node, "candela knows normal maps in tangent space only, of images; it is left out")
         elif not color.is_constant and strength > 0:
             if node.uv_map and color.mapping.uv is None:
                 color.mapping.uv = node.uv_map
@@ -308,7 +325,7 @@ class _Writer:
         return source.node.type if source is not None and source.is_output else None
 
     def _shade_mix_shader(self, node):
-        share = gray(self.reader.read(node.inputs[0]))
+        share = gray(self.read_socket(node.inputs[0]))
         if share.is_constant and share.number <= 0:
             self.shade(node.inputs[1])
             return
@@ -356,13 +373,24 @@ def _is_mixture(first, second):
     return not any(isinstance(value, (Texture, bool)) for value in values)
 
 
-def read_material(material, notices):
-    """The Material of Blender's one; of None, the grey that Blender shows."""
+def read_material(material, notices, points=None):
+    """The Material of Blender's one; of None, the grey that Blender shows. points: those of a mesh, for textures in space;
+    False if it has too many triangles for them."""
     if material is None:
         made = Material()
         made.values = {"base_color": 0.8, "roughness": 0.5}
         return made
-    writer = _Writer(material, notices)
+    try:
+        found = Notices()
+        made = _read(material, found, points)
+        notices.take(found)
+        return made
+    except NeedsPoints:
+        return Material(in_space=True)
+
+
+def _read(material, notices, points):
+    writer = _Writer(material, notices, points)
     tree = tree_of(material)
     output = (tree.get_output_node("CYCLES") or tree.get_output_node("ALL")) if tree is not None else None
     if tree is None:

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a socket of a node tree is: a number, a colour, or an image on a surface. What nodes make of images is computed
-here, pixel by pixel, so that candela gets an image again."""
+here, pixel by pixel, so that candela gets an image again; so is what they make of places, at the points of a mesh."""
 import math
 
 import numpy
 
-from .images import is_srgb, pixels_of, raw_pixels
+from . import procedural
+from .images import is_srgb, looked_up, pixels_of, raw_pixels
 
 _LUMINANCE = numpy.array([0.2126, 0.7152, 0.0722])
 
@@ -23,6 +24,29 @@ _MATH = {
     "LESS_THAN": lambda a, b, c: (a < b) * 1.0,
     "GREATER_THAN": lambda a, b, c: (a > b) * 1.0,
     "ROUND": lambda a, b, c: numpy.floor(a + 0.5),
+    "FLOOR": lambda a, b, c: numpy.floor(a),
+    "CEIL": lambda a, b, c: numpy.ceil(a),
+    "FRACT": lambda a, b, c: a - numpy.floor(a),
+    "MODULO": lambda a, b, c: numpy.fmod(a, numpy.where(b == 0, 1, b)) * (b != 0),
+    "SINE": lambda a, b, c: numpy.sin(a),
+    "COSINE": lambda a, b, c: numpy.cos(a),
+}
+
+# Of vectors (..., 3).
+_VECTOR_MATH = {
+    "ADD": lambda a, b, s: a + b,
+    "SUBTRACT": lambda a, b, s: a - b,
+    "MULTIPLY": lambda a, b, s: a * b,
+    "DIVIDE": lambda a, b, s: numpy.divide(a, b, out=numpy.zeros_like(a * b), where=b != 0),
+    "SCALE": lambda a, b, s: a * s,
+    "MINIMUM": lambda a, b, s: numpy.minimum(a, b),
+    "MAXIMUM": lambda a, b, s: numpy.maximum(a, b),
+    "ABSOLUTE": lambda a, b, s: numpy.abs(a),
+    "FLOOR": lambda a, b, s: numpy.floor(a),
+    "FRACTION": lambda a, b, s: a - numpy.floor(a),
+    "LENGTH": lambda a, b, s: numpy.linalg.norm(a, axis=-1, keepdims=True),
+    "DISTANCE": lambda a, b, s: numpy.linalg.norm(a - b, axis=-1, keepdims=True),
+    "DOT_PRODUCT": lambda a, b, s: (a * b).sum(-1, keepdims=True),
 }
 
 _BLENDS = {
@@ -35,6 +59,18 @@ _BLENDS = {
     "SCREEN": lambda a, b: 1 - (1 - a) * (1 - b),
     "DIFFERENCE": lambda a, b: numpy.abs(a - b),
 }
+
+
+# Texture coordinates of the texels of a surface.Points.
+IN_SPACE = "those of points in space"
+
+# What differs from place to place on a mesh, and is no image on it.
+_SPATIAL = {"TEX_COORD", "UVMAP", "NEW_GEOMETRY", "TEX_BRICK", "TEX_CHECKER", "TEX_GRADIENT", "TEX_MAGIC", "TEX_NOISE",
+            "TEX_WAVE", "TEX_WHITE_NOISE"}
+
+
+class NeedsPoints(Exception):
+    """A socket has no value but at the points of a mesh."""
 
 
 class Mapping:
@@ -84,9 +120,11 @@ def constant(value):
 
 
 class Reader:
-    """Reads the sockets of a material's nodes."""
+    """Reads the sockets of a material's nodes. `points`: the surface.Points at which it does so; None for images as they are
+    and constants alone, False if there are none to be had."""
 
     def __init__(self, place, notices):
+        self.points = None
         self._place = place
         self._notices = notices
         self._groups = []  # The nodes of the groups that are being read, the innermost last.
@@ -140,6 +178,11 @@ class Reader:
         if reader is None:
             self.notice(node, f"candela does not know nodes of the type {node.bl_label}; its value is 0.5")
             return constant(0.5)
+        if node.type in _SPATIAL and not self.points:
+            if self.points is None:
+                raise NeedsPoints
+            self.notice(node, "its mesh has too many triangles for textures in space; its value is 0.5")
+            return constant(0.5)
         return reader(node, output)
 
     # Each: the Value of an output of a node of this type.
@@ -151,19 +194,26 @@ class Reader:
         return constant(output.default_value)
 
     def _read_vertex_color(self, node, output):
-        return Value([1, 1, 1, 1], is_color_attribute=True)
+        if self.points and self.points.colors is not None:
+            return self._at_points(self.points.colors)
+        return Value([1, 1, 1, 1], is_color_attribute=not self.points)
 
     def _read_attribute(self, node, output):
         if output.name == "Color":
-            return Value([1, 1, 1, 1], is_color_attribute=True)
+            return self._read_vertex_color(node, output)
         self.notice(node, "candela knows the colours of vertices alone among attributes; its value is 0.5")
         return constant(0.5)
 
     def _read_tex_image(self, node, output):
         if node.image is None:
             return constant((1, 0, 1, 1))
-        mapping = self._mapping(node)
         pixels = pixels_of(node.image, self._notices)
+        if self.points:
+            linked = node.inputs["Vector"].is_linked
+            place = self._vector(node) if linked else self.points.uv()
+            value = self._at_points(looked_up(pixels, place, node.extension, node.interpolation == "Closest"))
+            return Value(numpy.repeat(value.pixels[..., 3:], 4, -1), value.mapping) if output.name == "Alpha" else value
+        mapping = self._mapping(node)
         if output.name == "Alpha":
             return Value(numpy.repeat(pixels[..., 3:], 4, -1), mapping)
         return Value(pixels, mapping, node.image)
@@ -185,7 +235,9 @@ class Reader:
         if source.node.type == "UVMAP":
             return Mapping(uv=source.node.uv_map or None, **keys)
         if source.node.type != "TEX_COORD" or source.name != "UV":
-            self.notice(source.node, f"candela knows texture coordinates by UV only, not {source.name}")
+            if self.points is None:
+                raise NeedsPoints
+            self.notice(source.node, f"candela knows texture coordinates by UV only here, not {source.name}")
         return Mapping(**keys)
 
     def _transform(self, node):
@@ -203,11 +255,155 @@ class Reader:
         """A function of several values, pixel by pixel."""
         images = [value for value in values if not value.is_constant]
         if any(value.is_color_attribute for value in values):
+            if self.points is None:
+                raise NeedsPoints
             self.notice(node, "candela multiplies the colours of vertices only; they are white here")
         if len({value.pixels.shape for value in images}) > 1 or any(v.mapping != images[0].mapping for v in images):
+            if self.points is None:
+                raise NeedsPoints
             self.notice(node, "candela does not combine images of several sizes or places; the first is used")
             values = [v if v.is_constant or v is images[0] else Value(v.pixels.mean((0, 1))) for v in values]
         return Value(function(*(value.pixels for value in values)), images[0].mapping if images else None)
+
+    # At points.
+
+    def _at_points(self, values):
+        """The Value of numbers (side, side), or of vectors or colours (side, side, 3 or 4), at the points."""
+        values = numpy.asarray(values, numpy.float32)
+        if values.ndim == 2:
+            values = numpy.repeat(values[..., None], 3, -1)
+        if values.shape[-1] == 3:
+            values = numpy.concatenate([values, numpy.ones_like(values[..., :1])], -1)
+        return Value(values, Mapping(uv=IN_SPACE, wrap="clamp"))
+
+    def _amount(self, node, name, default=0.0):
+        """A number that is the same at all points."""
+        if name not in node.inputs:
+            return default
+        value = self.read(node.inputs[name])
+        if not value.is_constant:
+            self.notice(node, f"candela wants a constant {name}; the mean is used")
+            value = Value(value.pixels.mean((0, 1)))
+        return _gray(value).number
+
+    def _vector(self, node, scale=1.0):
+        """(side, side, 3): where a texture is looked up."""
+        linked = node.inputs["Vector"].is_linked
+        place = self.read(node.inputs["Vector"]).pixels[..., :3] if linked else self.points.generated
+        return numpy.broadcast_to(place * numpy.float32(scale), (self.points.side, self.points.side, 3)).astype(numpy.float32)
+
+    def _coordinates(self, node, dimensions, scale=1.0):
+        """What a noise of these dimensions is a function of."""
+        if dimensions == "4D":
+            self.notice(node, "candela knows noises of up to three dimensions; its W is left out")
+        if dimensions == "1D":
+            w = _gray(self.read(node.inputs["W"])).pixels[..., 0] * numpy.float32(scale)
+            return [numpy.broadcast_to(w, (self.points.side, self.points.side)).astype(numpy.float32)]
+        place = self._vector(node, scale)
+        return [place[..., i] for i in range(2 if dimensions == "2D" else 3)]
+
+    def _read_tex_coord(self, node, output):
+        if output.name == "Object" and node.object is not None:
+            self.notice(node, "candela knows coordinates of the object itself, not those of another")
+        found = {"Generated": "generated", "Object": "object", "Normal": "normal"}.get(output.name)
+        if found is None and output.name != "UV":
+            self.notice(node, f"candela has no texture coordinates {output.name}; they are Generated")
+            found = "generated"
+        return self._at_points(getattr(self.points, found) if found is not None else self.points.uv())
+
+    def _read_uvmap(self, node, output):
+        return self._at_points(self.points.uv(node.uv_map))
+
+    def _read_new_geometry(self, node, output):
+        if output.name in {"Position", "Normal", "True Normal"}:
+            self.notice(node, f"candela has {output.name} in the object's own space here")
+            return self._at_points(self.points.object if output.name == "Position" else self.points.normal)
+        self.notice(node, f"candela does not know {output.name}; its value is 0.5")
+        return constant(0.5)
+
+    def _read_mapping(self, node, output):
+        scale, location = (self.read(node.inputs[name]) if name in node.inputs and node.inputs[name].enabled
+                           else constant((value,) * 3) for name, value in (("Scale", 1.0), ("Location", 0.0)))
+        if node.inputs["Rotation"].is_linked:
+            self.notice(node, "candela turns by a constant; it is left out")
+            turn = numpy.eye(3, dtype=numpy.float32)
+        else:
+            turn = numpy.array(node.inputs["Rotation"].default_value.to_matrix(), numpy.float32)
+
+        def mapped(place, size, moved):
+            place, size, moved = (x[..., :3] for x in (place, size, moved))
+            if node.vector_type == "TEXTURE":
+                result = numpy.divide((place - moved) @ turn, size, out=numpy.zeros_like(place - moved), where=size != 0)
+            elif node.vector_type == "NORMAL":
+                result = numpy.divide(place, size, out=numpy.zeros_like(place * size), where=size != 0) @ turn.T
+                result = result / numpy.maximum(numpy.linalg.norm(result, axis=-1, keepdims=True), 1e-30)
+            else:
+                result = (place * size) @ turn.T + (moved if node.vector_type == "POINT" else 0)
+            return numpy.concatenate([result, numpy.ones_like(result[..., :1])], -1)
+        return self._combine(node, [self.read(node.inputs["Vector"]), scale, location], mapped)
+
+    def _read_vect_math(self, node, output):
+        function = _VECTOR_MATH.get(node.operation)
+        if function is None:
+            self.notice(node, f"candela does not know the operation {node.operation}; its first input is used")
+            return self.read(node.inputs[0])
+        scale = _gray(self.read(node.inputs["Scale"])) if "Scale" in node.inputs else constant(1.0)
+
+        def result(a, b, s):
+            found = function(a[..., :3], b[..., :3], s[..., :3])
+            found = numpy.broadcast_to(found, (*found.shape[:-1], 3))
+            return numpy.concatenate([found, numpy.ones_like(found[..., :1])], -1)
+        return self._combine(node, [self.read(node.inputs[0]), self.read(node.inputs[1]), scale], result)
+
+    def _read_tex_noise(self, node, output):
+        if getattr(node, "noise_type", "FBM") != "FBM":
+            self.notice(node, f"candela knows noises of the type fBM, not {node.noise_type}")
+        place = self._coordinates(node, node.noise_dimensions, self._amount(node, "Scale"))
+        return self._at_points(procedural.noise(
+            place, min(max(self._amount(node, "Detail"), 0.0), 15.0), min(max(self._amount(node, "Roughness"), 0.0), 1.0),
+            self._amount(node, "Lacunarity", 2.0), self._amount(node, "Distortion"), getattr(node, "normalize", True),
+            output.name == "Color"))
+
+    def _read_tex_white_noise(self, node, output):
+        place = self._coordinates(node, node.noise_dimensions)
+        if output.name != "Color":
+            return self._at_points(procedural.white_noise(*place))
+        turned = [place[i:] + place[:i] for i in range(len(place))]
+        return self._at_points(numpy.stack([procedural.white_noise(*(turned * 3)[i]) for i in range(3)], -1))
+
+    def _read_tex_checker(self, node, output):
+        value = self._at_points(procedural.checker(self._vector(node, self._amount(node, "Scale"))))
+        if output.name != "Color":
+            return value
+        colors = [value, self.read(node.inputs["Color1"]), self.read(node.inputs["Color2"])]
+        return self._combine(node, colors, lambda t, a, b: t * a + (1 - t) * b)
+
+    def _read_tex_gradient(self, node, output):
+        return self._at_points(procedural.gradient(self._vector(node), node.gradient_type))
+
+    def _read_tex_magic(self, node, output):
+        color = procedural.magic(self._vector(node, self._amount(node, "Scale")), node.turbulence_depth,
+                                 self._amount(node, "Distortion"))
+        return self._at_points(color if output.name == "Color" else color.mean(-1))
+
+    def _read_tex_wave(self, node, output):
+        direction = node.bands_direction if node.wave_type == "BANDS" else node.rings_direction
+        return self._at_points(procedural.wave(
+            self._vector(node, self._amount(node, "Scale")), node.wave_type, direction, node.wave_profile,
+            *(self._amount(node, name) for name in ("Phase Offset", "Distortion", "Detail", "Detail Scale",
+                                                    "Detail Roughness"))))
+
+    def _read_tex_brick(self, node, output):
+        mortar, tint = (self._at_points(value) for value in procedural.brick(
+            self._vector(node, self._amount(node, "Scale")),
+            *(self._amount(node, name) for name in ("Mortar Size", "Mortar Smooth", "Bias", "Brick Width", "Row Height")),
+            node.offset, node.offset_frequency, node.squash, node.squash_frequency))
+        if output.name != "Color":
+            return mortar
+        colors = [mortar, tint, *(self.read(node.inputs[name]) for name in ("Color1", "Color2", "Mortar"))]
+        return self._combine(node, colors, lambda m, t, a, b, c: ((1 - t) * a + t * b) * (1 - m) + m * c)
+
+    # Of images, of what is computed at points, and of constants alike.
 
     def _read_math(self, node, output):
         function = _MATH.get(node.operation)
@@ -290,13 +486,13 @@ class Reader:
         channel = [socket.name for socket in node.outputs].index(output.name)
         return self._combine(node, [self.read(node.inputs[0])], lambda x: numpy.repeat(x[..., channel:channel + 1], 4, -1))
 
-    _read_seprgb = _read_separate_color
+    _read_seprgb = _read_sepxyz = _read_separate_color
 
     def _read_combine_color(self, node, output):
         values = [_gray(self.read(node.inputs[i])) for i in range(3)]
         return self._combine(node, values, lambda r, g, b: _broadcast(r, g, b))
 
-    _read_combrgb = _read_combine_color
+    _read_combrgb = _read_combxyz = _read_combine_color
 
     def _read_rgbtobw(self, node, output):
         return _gray(self.read(node.inputs[0]))

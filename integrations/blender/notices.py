@@ -12,6 +12,10 @@ class Notices:
         """place: Blender's name of a thing, such as 'Material "Glass", node "Noise Texture"'."""
         self._notices.setdefault(f"{place}: {text}")
 
+    def take(self, others):
+        """Those of other Notices, too."""
+        self._notices.update(others._notices)
+
     def __iter__(self):
         return iter(self._notices)
 

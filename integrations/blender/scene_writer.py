@@ -22,7 +22,7 @@ _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
 
 
 class _Shown:
-    """A mesh with its materials, how the camera sees it (keys of a shape), and where it is shown."""
+    """A mesh with the materials of its slots, how the camera sees it (keys of a shape), and where it is shown."""
 
     def __init__(self, key, name, parts, materials, seen):
         self.key = key
@@ -43,7 +43,8 @@ class SceneWriter:
         self._scene = candela.Scene(size=size, session=session, **depsgraph.scene.candela.film())
         self._size = size
         self._cache = cache or Cache()
-        self._materials = {}
+        self._texels = 1024 if cache is None else 512  # Of textures in space: a viewport is to be quick.
+        self._written = set()
         self._shown = {}
 
     def write(self):
@@ -94,7 +95,8 @@ class SceneWriter:
 
     def _read_mesh(self, thing, instance, slots):
         """A mesh that is shown for the first time. Pointers say what is one mesh during a look at the scene, but not beyond."""
-        materials = [self._material(slot) for slot in slots] or [self._material(None)]
+        slots = slots or (None,)
+        materials = [self._material(slot) for slot in slots]
         if thing.is_holdout and not self._depsgraph.scene.render.film_transparent:
             self.notices.add(f'Object "{thing.name}"', "candela has holdouts before a transparent film alone; it is shown")
         hidden = [name for name in _RAYS[1:] if not getattr(thing, f"visible_{name}")]
@@ -103,17 +105,19 @@ class SceneWriter:
         owner = uid_of(thing)
         key = ("mesh", owner, sum(shown.key[1] == owner for shown in self._shown.values()))
         sources = {owner, uid_of(thing.data), uid_of(instance.parent)}
-        named = frozenset(made.uv for _, made in materials if made.uv is not None)
+        named = frozenset(made.uv for made in materials if made.uv is not None)
+        in_space = tuple(made.in_space for made in materials)
 
         def read():
             mesh = thing.data if thing.type == "MESH" else thing.to_mesh()
             try:
-                return [] if mesh is None else parts_of(mesh, self._second_uv(mesh, named))
+                return [] if mesh is None else parts_of(
+                    mesh, self._second_uv(mesh, named), lambda slot: in_space[min(slot, len(in_space) - 1)], self._texels)
             finally:
                 if thing.type != "MESH":
                     thing.to_mesh_clear()
-        parts = self._cache.parts(key, thing.data.as_pointer(), named, sources, read)
-        return _Shown(key, thing.name, parts, materials, self._seen(thing))
+        parts = self._cache.parts(key, thing.data.as_pointer(), (named, in_space), sources, read)
+        return _Shown(key, thing.name, parts, slots, self._seen(thing))
 
     def _seen(self, thing):
         """How the camera sees an object, as keys of its shapes."""
@@ -132,18 +136,26 @@ class SceneWriter:
         return min(named) if named else None
 
     def _material(self, material):
-        """Its name, and what candela makes of it."""
-        uid = uid_of(material)
-        if uid not in self._materials:
-            name = self._cache.name("material", uid, material.name_full if material is not None else "default")
-            made = self._cache.material(uid, lambda: read_material(material, self.notices))
+        """What candela makes of a material, of all that can be said without a mesh."""
+        return self._cache.material((uid_of(material),), lambda: read_material(material, self.notices))
+
+    def _write_material(self, material, shown, part):
+        """Adds it, once; returns its name, and what candela makes of it."""
+        made = self._material(material)
+        title = material.name_full if material is not None else "default"
+        key = (uid_of(material),)
+        if made.in_space:
+            title, key = f"{title} on {shown.name}", (*key, *shown.key, part.slot)
+            made = self._cache.material(key, lambda: read_material(material, self.notices, part.points), part.points)
+        name = self._cache.name("material", key, title)
+        if name not in self._written:
+            self._written.add(name)
             self._scene.add_material(name, made.type, **made.values)
-            self._materials[uid] = (name, made)
-        return self._materials[uid]
+        return name, made
 
     def _write_shown(self, shown):
         for number, part in enumerate(shown.parts):
-            name, made = shown.materials[min(part.slot, len(shown.materials) - 1)]
+            name, made = self._write_material(shown.materials[min(part.slot, len(shown.materials) - 1)], shown, part)
             arrays = self._arrays_for(part, made, shown.name)
             placing = {"transform": shown.matrices[0]} if len(shown.matrices) == 1 else \
                 {"transforms": numpy.array(shown.matrices)}

@@ -16,7 +16,7 @@ for version in "$@"; do
     "$environment/bin/python" -c 'import bpy' 2>/dev/null || "$environment/bin/pip" install --quiet "bpy==$version" ||
         { echo "Nothing was tested in Blender $version: no index of Python packages has it for this system."; exit 3; }
     echo "== Blender $version"
-    for test in blender_test viewport_test; do
+    for test in blender_test textures_test viewport_test; do
         "$environment/bin/python" tests/blender/$test.py build/blender/candela_blender build/release/candela
     done
 done

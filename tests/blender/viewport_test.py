@@ -192,6 +192,19 @@ class ViewportTest(SceneTest):
         self.assertEqual([method for method, _ in self.messages()], ["set", "load"])
         self.expect_new(picture)
 
+    def test_a_texture_in_space_goes_over_without_meshes(self):
+        self.room()
+        material = self.ball.data.materials[0]
+        checker = material.node_tree.nodes.new("ShaderNodeTexChecker")
+        material.node_tree.links.new(checker.outputs[0], sockets_of(material)["Base Color"])
+        self.expect_new(self.picture())
+        checker.inputs["Scale"].default_value = 3.0
+        change = self.expect_change("materials", arrays=["materials.Ball on Sphere.base_color"])
+        self.assertEqual(list(change["materials"]), ["Ball on Sphere"])
+        self.ball.data.vertices[0].co.z += 0.1
+        self.ball.data.update()
+        self.expect_new(self.picture())
+
     def test_an_armature_moves_its_mesh_at_each_frame(self):
         self.room()
         bones = link(bpy.data.objects.new("Bones", bpy.data.armatures.new("Bones")))
