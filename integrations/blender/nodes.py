@@ -3,6 +3,7 @@
 here, pixel by pixel, so that candela gets an image again; so is what they make of places, at the points of a mesh."""
 import math
 
+import bpy
 import numpy
 
 from . import procedural
@@ -66,7 +67,7 @@ IN_SPACE = "those of points in space"
 
 # What differs from place to place on a mesh, and is no image on it.
 _SPATIAL = {"TEX_COORD", "UVMAP", "NEW_GEOMETRY", "TEX_BRICK", "TEX_CHECKER", "TEX_GRADIENT", "TEX_MAGIC", "TEX_NOISE",
-            "TEX_WAVE", "TEX_WHITE_NOISE"}
+            "TEX_VORONOI", "TEX_WAVE", "TEX_WHITE_NOISE"}
 
 
 class NeedsPoints(Exception):
@@ -370,6 +371,26 @@ class Reader:
             return self._at_points(procedural.white_noise(*place))
         turned = [place[i:] + place[:i] for i in range(len(place))]
         return self._at_points(numpy.stack([procedural.white_noise(*(turned * 3)[i]) for i in range(3)], -1))
+
+    def _read_tex_voronoi(self, node, output):
+        dimensions = node.voronoi_dimensions
+        if dimensions == "1D":
+            self.notice(node, "candela knows Voronoi textures of two and three dimensions")
+            dimensions = "2D"
+        if node.feature not in {"F1", "F2", "DISTANCE_TO_EDGE"}:
+            self.notice(node, f"candela does not know the feature {node.feature}; it is F1")
+        if self._amount(node, "Detail") != 0:
+            self.notice(node, "candela has no octaves of Voronoi textures; the first is used")
+        place = self._coordinates(node, dimensions, self._amount(node, "Scale"))
+        randomness = min(max(self._amount(node, "Randomness", 1.0), 0.0), 1.0)
+        by_pcg = bpy.app.version >= (5, 0, 0)
+        if node.feature == "DISTANCE_TO_EDGE":
+            return self._at_points(procedural.voronoi_edge(place, randomness, node.normalize, by_pcg))
+        if output.name not in {"Distance", "Color"}:
+            self.notice(node, f"candela does not know its {output.name}; it is Distance")
+        value, color = procedural.voronoi(place, node.feature == "F2", node.distance, self._amount(node, "Exponent", 0.5),
+                                          randomness, node.normalize, by_pcg)
+        return self._at_points(color if output.name == "Color" else value)
 
     def _read_tex_checker(self, node, output):
         value = self._at_points(procedural.checker(self._vector(node, self._amount(node, "Scale"))))

@@ -6,14 +6,21 @@ import numpy
 _WORD = numpy.uint32
 
 
+def _turned(x, bits):
+    return (x << _WORD(bits)) | (x >> _WORD(32 - bits))
+
+
 def _hash(*words):
-    """Jenkins' hash (lookup3, 2006) of one to three words: arrays of uint32."""
+    """Jenkins' hash (lookup3, 2006) of one to four words: arrays of uint32."""
     start = _WORD(0xDEADBEEF + (len(words) << 2) + 13)
     none = numpy.zeros_like(words[0])
     a, b, c = (word + start for word in (*words, none, none)[:3])
-    for k in (14, 11, 25, 16, 4, 14, 24):
-        c = (c ^ b) - ((b << _WORD(k)) | (b >> _WORD(32 - k)))
-        a, b, c = b, c, a
+    if len(words) == 4:
+        for bits in (4, 6, 8, 16, 19, 4):
+            a, c, b = b, (a - c) ^ _turned(c, bits), c + b
+        a = a + words[3]
+    for bits in (14, 11, 25, 16, 4, 14, 24):
+        a, b, c = b, (c ^ b) - _turned(b, bits), a
     return b
 
 
@@ -197,3 +204,89 @@ def brick(point, mortar_size, mortar_smooth, bias, width, height, offset, offset
 def white_noise(*coordinates):
     """Of one to three coordinates."""
     return _random(*coordinates)
+
+
+def _pcg(*words):
+    """PCG's hash of two or three words, arrays of int32 (Jarzynski, Olano, Hash Functions for GPU Rendering, 2020)."""
+    factor, count = numpy.int32(1664525), len(words)
+    v = [word * factor + numpy.int32(1013904223) for word in words]
+    for end in (False, True):
+        for i in range(count):
+            v[i] = v[i] + (v[1 - i] * factor if count == 2 else v[(i + 1) % 3] * v[(i + 2) % 3])
+        if not end:
+            v = [word ^ (word >> 16) for word in v]
+    return [(word & 0x7FFFFFFF).astype(numpy.float32) / numpy.float32(0x7FFFFFFF) for word in v]
+
+
+def _random_in_cells(cells, count, by_pcg):
+    """`count` numbers from 0 to 1 for each cell: two or three arrays of int32. by_pcg: as since Blender 5.0."""
+    if by_pcg:
+        return _pcg(*cells) if count == len(cells) else _pcg(*cells, numpy.zeros_like(cells[0]))
+    numbers = [cell.astype(numpy.float32) for cell in cells]
+    return [_random(*numbers, *([numpy.full_like(numbers[0], i)] if i else [])) for i in range(count)]
+
+
+_METRICS = {
+    "EUCLIDEAN": lambda v, e: numpy.sqrt((v * v).sum(-1)),
+    "MANHATTAN": lambda v, e: numpy.abs(v).sum(-1),
+    "CHEBYCHEV": lambda v, e: numpy.abs(v).max(-1),
+    "MINKOWSKI": lambda v, e: (numpy.abs(v) ** e).sum(-1) ** (1 / e),
+}
+
+
+class _Cells:
+    """The cell of each place, and the points of the cells around it."""
+
+    def __init__(self, coordinates, randomness, by_pcg):
+        """coordinates: two or three arrays."""
+        floors = [numpy.floor(x) for x in coordinates]
+        self.cells = [floor.astype(numpy.int32) for floor in floors]
+        self._local = numpy.stack([x - floor for x, floor in zip(coordinates, floors)], -1)
+        self._randomness = numpy.float32(randomness)
+        self._by_pcg = by_pcg
+
+    def around(self):
+        """For each cell: its offset, and where its point is from the place, (..., N)."""
+        for offset in numpy.ndindex(*[3] * len(self.cells)):
+            offset = numpy.array(offset[::-1], numpy.int32) - 1
+            cells = [cell + o for cell, o in zip(self.cells, offset)]
+            moved = numpy.stack(_random_in_cells(cells, len(cells), self._by_pcg), -1) * self._randomness
+            yield offset, offset.astype(numpy.float32) + moved - self._local
+
+
+def voronoi(coordinates, is_second, metric, exponent, randomness, normalize, by_pcg):
+    """The distance to the nearest of the points of Worley's cells, or the second, and (..., 3) random colours of its cell.
+    Of two or three coordinates. metric: as Blender names it. by_pcg: as since Blender 5.0."""
+    distance = _METRICS[metric]
+    cells = _Cells(coordinates, randomness, by_pcg)
+    shape = coordinates[0].shape
+    nearest = [(numpy.full(shape, numpy.inf, numpy.float32), numpy.zeros((*shape, len(coordinates)), numpy.int32))] * 2
+    for offset, way in cells.around():
+        found = distance(way, exponent)
+        (first, at_first), (second, at_second) = nearest
+        is_first, is_next = found < first, found < second
+        second = numpy.where(is_first, first, numpy.where(is_next, found, second))
+        at_second = numpy.where(is_first[..., None], at_first, numpy.where(is_next[..., None], offset, at_second))
+        nearest = [(numpy.where(is_first, found, first), numpy.where(is_first[..., None], offset, at_first)),
+                   (second, at_second)]
+    value, at = nearest[is_second]
+    colors = _random_in_cells([cell + at[..., i] for i, cell in enumerate(cells.cells)], 3, by_pcg)
+    if normalize:
+        longest = distance(numpy.full(len(coordinates), 0.5 + 0.5 * randomness), exponent)
+        value = value / (longest * (2 if is_second else 1))
+    return value, numpy.stack(colors, -1)
+
+
+def voronoi_edge(coordinates, randomness, normalize, by_pcg):
+    """The distance to the nearest edge between Worley's cells."""
+    cells = _Cells(coordinates, randomness, by_pcg)
+    nearest = numpy.full((*coordinates[0].shape, len(coordinates)), 1e9, numpy.float32)
+    for _, way in cells.around():
+        nearest = numpy.where(((way * way).sum(-1) < (nearest * nearest).sum(-1))[..., None], way, nearest)
+    edge = numpy.full(coordinates[0].shape, numpy.inf, numpy.float32)
+    for _, way in cells.around():
+        across = way - nearest
+        length = numpy.sqrt((across * across).sum(-1))
+        found = ((nearest + way) * across).sum(-1) / (2 * numpy.maximum(length, 1e-30))
+        edge = numpy.where((length > 0.01) & (found < edge), found, edge)
+    return edge / (0.5 + 0.5 * randomness) if normalize else edge

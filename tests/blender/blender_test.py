@@ -243,16 +243,16 @@ class BlenderTest(SceneTest):
         self.assertGreater(red, 3 * green)
 
     def test_what_candela_does_not_know_is_named(self):
-        material = principled("Clouds", Anisotropic=0.5)
-        cells = material.node_tree.nodes.new("ShaderNodeTexVoronoi")
-        material.node_tree.links.new(cells.outputs[0], material.node_tree.nodes["Principled BSDF"].inputs["Base Color"])
+        material = principled("Rim", Anisotropic=0.5)
+        fresnel = material.node_tree.nodes.new("ShaderNodeFresnel")
+        material.node_tree.links.new(fresnel.outputs[0], material.node_tree.nodes["Principled BSDF"].inputs["Base Color"])
         ball = add("uv_sphere", material, radius=1)
         ball.modifiers.new("Hair", "PARTICLE_SYSTEM")
         ball.particle_systems[0].settings.type = "HAIR"
         link(bpy.data.objects.new("Smoke", bpy.data.volumes.new("Smoke")))
         add_camera()
         found = self.notices()
-        for text in ('Material "Clouds", node "Voronoi Texture": candela does not know', "its anisotropy is left out",
+        for text in ('Material "Rim", node "Fresnel": candela does not know', "its anisotropy is left out",
                      '"Sphere": candela has no hair', 'Object "Smoke": candela has no volumes'):
             self.assertIn(text, found)
         self.render()

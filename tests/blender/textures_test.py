@@ -113,6 +113,26 @@ class ValuesTest(SceneTest):
                     **{"Mortar Size": 0.04, "Mortar Smooth": 0.3, "Brick Width": 0.6, "Row Height": 0.3})
 
 
+    def test_voronoi_cells(self):
+        by_pcg = bpy.app.version >= (5, 0, 0)
+        place = [5 * PLACE[..., i] for i in range(3)]
+        for dimensions, feature, metric, normalize, output in (
+                (3, "F1", "EUCLIDEAN", False, "Distance"), (3, "F1", "MANHATTAN", True, "Distance"),
+                (3, "F2", "CHEBYCHEV", True, "Distance"), (2, "F1", "MINKOWSKI", False, "Distance"),
+                (2, "F2", "EUCLIDEAN", True, "Distance"), (3, "F1", "EUCLIDEAN", False, "Color"),
+                (2, "F2", "EUCLIDEAN", False, "Color"), (2, "F1", "EUCLIDEAN", False, "Color"),
+                (3, "DISTANCE_TO_EDGE", "EUCLIDEAN", True, "Distance"), (2, "DISTANCE_TO_EDGE", "EUCLIDEAN", False, "Distance")):
+            with self.subTest((dimensions, feature, metric, output)):
+                if feature == "DISTANCE_TO_EDGE":
+                    found = procedural.voronoi_edge(place[:dimensions], 0.8, normalize, by_pcg)
+                else:
+                    values = procedural.voronoi(place[:dimensions], feature == "F2", metric, 1.5, 0.8, normalize, by_pcg)
+                    found = values[output == "Color"]
+                exponent = {"Exponent": 1.5} if metric == "MINKOWSKI" else {}
+                self.expect(found, "Voronoi", output, voronoi_dimensions=f"{dimensions}D", feature=feature, distance=metric,
+                            normalize=normalize, Scale=5.0, Randomness=0.8, **exponent)
+
+
 class PlacesTest(SceneTest):
     def test_texels_are_what_is_at_the_points_of_triangles(self):
         """By a bilinear look-up at the corners and inside of triangles of all sizes."""
