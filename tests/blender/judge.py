@@ -56,6 +56,19 @@ def textured():
     return material
 
 
+def in_space(kind, socket, **values):
+    material = principled(Roughness=0.5)
+    tree = material.node_tree
+    texture, bump = (tree.nodes.new("ShaderNode" + name) for name in ("Tex" + kind, "Bump"))
+    for key, value in values.items():
+        texture.inputs[key].default_value = value
+    if socket == "Normal":
+        bump.inputs["Distance"].default_value = 0.1
+        tree.links.new(texture.outputs[0], bump.inputs["Height"])
+    tree.links.new((bump if socket == "Normal" else texture).outputs[0], tree.nodes["Principled BSDF"].inputs[socket])
+    return material
+
+
 def add_light(kind, location=(2, -2, 4), target=(0, 0, 0), **values):
     data = bpy.data.lights.new(kind, kind)
     for key, value in values.items():
@@ -126,6 +139,9 @@ LIGHTS = {
 }
 MATERIALS = {
     "image": textured,
+    "noise": lambda: in_space("Noise", "Base Color", Scale=4.0),
+    "cells": lambda: in_space("Voronoi", "Base Color", Scale=4.0),
+    "bump": lambda: in_space("Noise", "Normal", Scale=4.0),
     "plastic": lambda: principled(Base_Color=(0.8, 0.1, 0.1, 1), Roughness=0.2),
     "gold, 0.2": lambda: principled(Base_Color=(1, 0.77, 0.34, 1), Metallic=1, Roughness=0.2),
     "gold, 0.5": lambda: principled(Base_Color=(1, 0.77, 0.34, 1), Metallic=1, Roughness=0.5),
