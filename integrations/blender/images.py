@@ -64,7 +64,10 @@ def looked_up(pixels, place, extension, is_nearest):
                 index = index % (2 * size)
                 index = numpy.minimum(index, 2 * size - 1 - index)
             found.append(numpy.clip(index, 0, size - 1))
-        return pixels[found[1], found[0]]
+        values = pixels[found[1], found[0]]
+        if extension == "CLIP":
+            values = numpy.where(((found[0] == column) & (found[1] == row))[..., None], values, 0)
+        return values
     if is_nearest:
         values = at(numpy.floor(x + 0.5).astype(int), numpy.floor(y + 0.5).astype(int))
     else:
@@ -72,7 +75,4 @@ def looked_up(pixels, place, extension, is_nearest):
         u, v = (x - left)[..., None], (y - top)[..., None]
         values = (at(left, top) * (1 - u) + at(left + 1, top) * u) * (1 - v) + \
             (at(left, top + 1) * (1 - u) + at(left + 1, top + 1) * u) * v
-    if extension == "CLIP":
-        inside = ((place[..., :2] >= 0) & (place[..., :2] <= 1)).all(-1)
-        values = numpy.where(inside[..., None], values, 0)
     return values.astype(numpy.float32)

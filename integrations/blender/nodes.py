@@ -133,6 +133,11 @@ class Reader:
     def notice(self, node, text):
         self._notices.add(f'{self._place}, node "{node.name}"', text)
 
+    def _want_points(self):
+        """Before what can be said at points alone, and else only with a notice."""
+        if self.points is None:
+            raise NeedsPoints
+
     def source(self, socket):
         """The socket that feeds this one, behind reroutes and out of groups; None if nothing does. Ends with `leave` once it
         has been read."""
@@ -180,8 +185,7 @@ class Reader:
             self.notice(node, f"candela does not know nodes of the type {node.bl_label}; its value is 0.5")
             return constant(0.5)
         if node.type in _SPATIAL and not self.points:
-            if self.points is None:
-                raise NeedsPoints
+            self._want_points()
             self.notice(node, "its mesh has too many triangles for textures in space; its value is 0.5")
             return constant(0.5)
         return reader(node, output)
@@ -224,6 +228,7 @@ class Reader:
             self.notice(node, f"candela has no projection {node.projection} of images; texture coordinates are used")
         wraps = {"REPEAT": "repeat", "MIRROR": "mirror"}
         if node.extension == "CLIP":
+            self._want_points()
             self.notice(node, "candela does not clip images; their edges are continued")
         keys = {"wrap": wraps.get(node.extension, "clamp"),
                 "filter": "nearest" if node.interpolation == "Closest" else "bilinear"}
@@ -236,18 +241,19 @@ class Reader:
         if source.node.type == "UVMAP":
             return Mapping(uv=source.node.uv_map or None, **keys)
         if source.node.type != "TEX_COORD" or source.name != "UV":
-            if self.points is None:
-                raise NeedsPoints
+            self._want_points()
             self.notice(source.node, f"candela knows texture coordinates by UV only here, not {source.name}")
         return Mapping(**keys)
 
     def _transform(self, node):
         inputs = node.inputs
         if node.vector_type not in {"POINT", "VECTOR"} or any(inputs[name].is_linked for name in ("Scale", "Rotation")):
+            self._want_points()
             self.notice(node, "candela knows mappings of the type Point, of constants; it is left out")
             return {}
         x, y, z = inputs["Rotation"].default_value
         if x != 0 or y != 0:
+            self._want_points()
             self.notice(node, "candela turns texture coordinates about Z only")
         offset = inputs["Location"].default_value[:2] if node.vector_type == "POINT" else (0, 0)
         return {"scale": tuple(inputs["Scale"].default_value[:2]), "rotation": math.degrees(z), "offset": tuple(offset)}
@@ -256,12 +262,10 @@ class Reader:
         """A function of several values, pixel by pixel."""
         images = [value for value in values if not value.is_constant]
         if any(value.is_color_attribute for value in values):
-            if self.points is None:
-                raise NeedsPoints
+            self._want_points()
             self.notice(node, "candela multiplies the colours of vertices only; they are white here")
         if len({value.pixels.shape for value in images}) > 1 or any(v.mapping != images[0].mapping for v in images):
-            if self.points is None:
-                raise NeedsPoints
+            self._want_points()
             self.notice(node, "candela does not combine images of several sizes or places; the first is used")
             values = [v if v.is_constant or v is images[0] else Value(v.pixels.mean((0, 1))) for v in values]
         return Value(function(*(value.pixels for value in values)), images[0].mapping if images else None)

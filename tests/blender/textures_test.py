@@ -13,6 +13,15 @@ PLACE = numpy.float32(SHIFT) + numpy.stack(
     [*numpy.meshgrid(*[(numpy.arange(SIZE, dtype=numpy.float32) + 0.5) / SIZE] * 2), numpy.zeros((SIZE, SIZE))], -1)
 
 
+class Pixels:
+    """Points at the middles of the pixels of a square."""
+    side = SIZE
+
+    @staticmethod
+    def uv(name=None):
+        return PLACE - numpy.float32(SHIFT)
+
+
 def set_up(node, values):
     for key, value in values.items():
         if key in node.inputs:
@@ -41,25 +50,73 @@ def clear():
 class ValuesTest(SceneTest):
     """Cycles shows a square from above whose emission is a texture, and looks at the middle of each pixel."""
 
-    def by_cycles(self, kind, output, values):
-        clear()
+    def setUp(self):
+        super().setUp()
         scene = bpy.context.scene
         scene.render.engine = "CYCLES"
         scene.render.resolution_x = scene.render.resolution_y = SIZE
         scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.filter_width = 1, False, 0.01
+
+    def shown(self, node, output):
+        """What a node makes of texture coordinates that are shifted: (SIZE, SIZE, 3), from the bottom; and its socket."""
+        clear()
         add_camera((0.5, 0.5, 1), (0.5, 0.5, 0), type="ORTHO", ortho_scale=1)
-        material = principled()
-        nodes, links = material.node_tree.nodes, material.node_tree.links
-        texture, place, moved, emission = (
-            nodes.new("ShaderNode" + name) for name in ("Tex" + kind, "UVMap", "Mapping", "Emission"))
-        set_up(texture, values)
+        tree = node.id_data
+        place, moved, emission = (tree.nodes.new("ShaderNode" + name) for name in ("UVMap", "Mapping", "Emission"))
         moved.inputs["Location"].default_value = SHIFT
-        links.new(place.outputs[0], moved.inputs["Vector"])
-        links.new(moved.outputs[0], texture.inputs["Vector"])
-        links.new(texture.outputs[output], emission.inputs["Color"])
-        links.new(emission.outputs[0], nodes["Material Output"].inputs["Surface"])
-        add("plane", material, size=1, location=(0.5, 0.5, 0))
-        return self.render()[::-1, :, :3]
+        tree.links.new(place.outputs[0], moved.inputs["Vector"])
+        tree.links.new(moved.outputs[0], next(s for s in node.inputs if s.type == "VECTOR" and not s.is_linked))
+        tree.links.new(node.outputs[output], emission.inputs["Color"])
+        tree.links.new(emission.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        add("plane", self.material, size=1, location=(0.5, 0.5, 0))
+        return self.render()[::-1, :, :3], emission.inputs["Color"]
+
+    def new_node(self, kind, **values):
+        self.material = principled()
+        node = self.material.node_tree.nodes.new("ShaderNode" + kind)
+        set_up(node, values)
+        return node
+
+    def by_cycles(self, kind, output, values):
+        return self.shown(self.new_node("Tex" + kind, **values), output)[0]
+
+    def expect_read(self, node, output=0):
+        """The add-on reads the node's values as Cycles does, at points that are the middles of pixels."""
+        expected, socket = self.shown(node, output)
+        notices = addon.notices.Notices()
+        reader = addon.nodes.Reader("", notices)
+        reader.points = Pixels
+        found = reader.read(socket).pixels[..., :3]
+        self.assertEqual(list(notices), [])
+        self.assertGreater(numpy.ptp(expected), 0.1)
+        numpy.testing.assert_allclose(found, expected, rtol=0, atol=2e-4)
+
+    def test_mappings(self):
+        for kind in ("POINT", "TEXTURE", "VECTOR", "NORMAL"):
+            with self.subTest(kind):
+                node = self.new_node("Mapping", vector_type=kind, Scale=(1.5, 0.7, 2), Rotation=(0.3, -0.5, 0.9))
+                if kind in {"POINT", "TEXTURE"}:
+                    node.inputs["Location"].default_value = (0.1, 0.2, -0.3)
+                self.expect_read(node)
+
+    def test_vector_math(self):
+        for operation in ("ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "SCALE", "MINIMUM", "MAXIMUM", "ABSOLUTE", "FLOOR", "FRACTION",
+                          "LENGTH", "DISTANCE", "DOT_PRODUCT"):
+            with self.subTest(operation):
+                node = self.new_node("VectorMath", operation=operation)
+                if len([s for s in node.inputs if s.enabled and s.type == "VECTOR"]) > 1:
+                    node.inputs[1].default_value = (0.4, -0.3, 0.7)
+                if operation == "SCALE":
+                    node.inputs["Scale"].default_value = 1.7
+                self.expect_read(node, next(i for i, s in enumerate(node.outputs) if s.enabled))
+
+    def test_images_go_on_beyond_their_edges(self):
+        image = bpy.data.images.new("Image", 8, 4, float_buffer=True)
+        image.pixels[:] = numpy.random.default_rng(1).uniform(0, 1, 8 * 4 * 4).tolist()
+        image.alpha_mode = "NONE"
+        for extension in ("REPEAT", "EXTEND", "MIRROR", "CLIP"):
+            with self.subTest(extension):
+                self.expect_read(self.new_node("TexImage", image=image, extension=extension))
 
     def expect(self, found, kind, output="Color", **values):
         """Coordinates are rounded by 1e-7; the steepest texture rises by a few hundred."""
