@@ -148,7 +148,7 @@ class Accumulator:
                 self._accumulate(look)
             except Exception as error:  # A thread that ends would leave the viewport as it is.
                 if getattr(error, "kind", "") != "cancelled":
-                    self._say(str(error) or repr(error))
+                    self.say(str(error) or repr(error))
         self._close_scene()
 
     def _close_scene(self):
@@ -245,7 +245,8 @@ class Accumulator:
         back = position @ forward - nearest + 1e-3 * float(numpy.linalg.norm(bounds[1] - bounds[0])) + 1e-6
         return {**look.camera, "position": (position - back * forward).tolist(), "look_at": (target - back * forward).tolist()}
 
-    def _say(self, text):
+    def say(self, text):
+        """Another message."""
         with self._lock:
             self._message = text
             self._lock.notify_all()

@@ -80,7 +80,7 @@ class CandelaEngine(bpy.types.RenderEngine):
             self.begun = time.monotonic()
             self.viewport.update(depsgraph, session(), is_seen)
         except candela.Error as error:
-            self.update_stats("candela", str(error))
+            self.viewport.accumulator.say(str(error))
 
     def view_draw(self, context, depsgraph):
         if self.is_local != (context.space_data.local_view is not None):
@@ -99,7 +99,7 @@ class CandelaEngine(bpy.types.RenderEngine):
         try:
             self.viewport.begin_again(session())
         except candela.Error as error:
-            self.update_stats("candela", str(error))
+            self.viewport.accumulator.say(str(error))
 
     def _accumulate(self, written, view_layer, scene, crop):
         settings = scene.candela

@@ -6,6 +6,7 @@ import math
 import os
 import signal
 import threading
+import types
 
 import bpy
 import mathutils
@@ -362,6 +363,16 @@ class ViewportTest(SceneTest):
         self.cube.data.vertices[0].co.x = -0.75
         self.cube.data.update()
         numpy.testing.assert_array_equal(self.picture(), before)
+
+    def test_a_program_that_does_not_start_is_told(self):
+        def fails():
+            raise addon.candela.Error("it does not start")
+        start, addon.engine.session = addon.engine.session, fails
+        self.addCleanup(setattr, addon.engine, "session", start)
+        engine = types.SimpleNamespace(viewport=self.viewport)
+        context = types.SimpleNamespace(space_data=types.SimpleNamespace(local_view=None))
+        addon.engine.CandelaEngine.view_update(engine, context, bpy.context.evaluated_depsgraph_get())
+        self.assertEqual(self.viewport.accumulator.message, "it does not start")
 
     def test_closing_frees_the_scene(self):
         self.room()

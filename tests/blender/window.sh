@@ -35,6 +35,12 @@ sh cmake/blender.sh "$program"
 rm -rf build/window "$root/root/try"
 mkdir -p build/window "$root/root/try"
 cp build/blender/candela-*.zip tests/blender/window.py "$root/root/try"
+# The libraries of the program that Debian 13 has in other versions only.
+cp "$program" "$root/root/try/program"
+for library in $(chroot "$root" ldd /root/try/program | sed -n 's/^\t\(.*\) => not found$/\1/p'); do
+    cp -L "$(ldd "$program" | sed -n "s/^\t$library => \([^ ]*\) .*/\1/p")" "$root/usr/local/lib"
+done
+chroot "$root" ldconfig
 # All that runs there ends with the name spaces, and so do the mounts.
 # shellcheck disable=SC2016  # The inner shell replaces these.
 unshare --mount --pid --fork --kill-child sh -eu -c '
