@@ -27,7 +27,6 @@ def accumulator():
 
 
 def begin():
-    bpy.context.preferences.view.show_splash = False
     bpy.ops.preferences.addon_enable(module=MODULE)
     scene = bpy.context.scene
     scene.render.engine = "CANDELA"

@@ -50,6 +50,7 @@ unshare --mount --pid --fork --kill-child sh -eu -c '
         export HOME=/root LIBGL_ALWAYS_SOFTWARE=1
         blender --version | head -n 1
         blender --command extension install-file --repo user_default --enable /root/try/candela-*.zip
+        blender --background --python-expr \"import bpy; bpy.context.preferences.view.show_splash = False; bpy.ops.wm.save_userpref()\"
         timeout 900 xvfb-run -a -s \"-screen 0 1024x640x24\" blender --window-geometry 0 0 1024 640 \
             --python /root/try/window.py -- /root/try bl_ext.user_default.candela"' sh "$root" 2>&1 | tee build/window/log
 cp "$root"/root/try/*.png build/window
