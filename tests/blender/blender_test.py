@@ -289,6 +289,34 @@ class BlenderTest(SceneTest):
         self.expect_close(image[:SIZE // 2].sum() * pixel, 3 * math.pi * 0.09, 0.03)
         self.expect_close(image.sum() * pixel, 3 * math.pi * 0.09 + 9 * 0.09, 0.03)
 
+    def test_a_library_override_is_where_it_is_put(self):
+        add("plane", glowing(), size=0.5)
+        thing = bpy.context.object
+        library = Path(self.file).with_name("library.blend")
+        bpy.data.libraries.write(str(library), {thing})
+        bpy.data.objects.remove(thing)
+        with bpy.data.libraries.load(str(library), link=True) as (_, here):
+            here.objects = ["Plane"]
+        thing = link(here.objects[0].override_create())
+        thing.location = (2, -1, 0)
+        add_camera()
+        bpy.context.view_layer.update()
+        self.expect_spot(self.render(), thing)
+
+    def test_the_sun_of_a_sky_is_where_blender_has_it(self):
+        tree = bpy.context.scene.world.node_tree
+        sky = tree.nodes.new("ShaderNodeTexSky")
+        sky.sun_elevation, sky.sun_rotation = math.radians(20), math.radians(50)
+        tree.links.new(sky.outputs[0], self.background.inputs["Color"])
+        add_camera((0, 0, 0), (math.sin(0.7), math.cos(0.7), 0.4))
+        spots = []
+        for engine in ("CANDELA", "CYCLES"):
+            bpy.context.scene.render.engine = engine
+            bpy.context.scene.cycles.samples = 64
+            image = self.render()
+            spots.append(spot_of(image * (image > 0.5 * image[..., :1].max())))
+        self.assertLess(numpy.abs(spots[0] - spots[1]).max(), 1)
+
     def test_animations_move_objects_and_bones(self):
         bpy.context.scene.candela.samples = 256
         ball = add("uv_sphere", glowing(), radius=0.05)
