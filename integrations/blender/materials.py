@@ -5,9 +5,10 @@ import math
 import numpy
 
 from .candela import Texture
-from .nodes import IN_SPACE, NeedsPoints, Reader, Value, as_codes, gray
+from .nodes import NeedsPoints, Reader
 from .notices import Notices
 from .trees import tree_of
+from .values import IN_SPACE, Value, as_codes, gray
 
 _BLACK = {"base_color": 0.0, "specular": 0.0}
 

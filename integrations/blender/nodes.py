@@ -3,13 +3,11 @@
 here, pixel by pixel, so that candela gets an image again; so is what they make of places, at the points of a mesh."""
 import math
 
-import bpy
 import numpy
 
-from . import procedural
-from .images import is_srgb, looked_up, pixels_of, raw_pixels
-
-_LUMINANCE = numpy.array([0.2126, 0.7152, 0.0722])
+from . import spatial
+from .images import looked_up, pixels_of
+from .values import Mapping, Value, constant, gray
 
 _MATH = {
     "ADD": lambda a, b, c: a + b,
@@ -62,62 +60,8 @@ _BLENDS = {
 }
 
 
-# Texture coordinates of the texels of a surface.Points.
-IN_SPACE = "those of points in space"
-
-# What differs from place to place on a mesh, and is no image on it.
-_SPATIAL = {"TEX_COORD", "UVMAP", "NEW_GEOMETRY", "TEX_BRICK", "TEX_CHECKER", "TEX_GRADIENT", "TEX_MAGIC", "TEX_NOISE",
-            "TEX_VORONOI", "TEX_WAVE", "TEX_WHITE_NOISE"}
-
-
 class NeedsPoints(Exception):
     """A socket has no value but at the points of a mesh."""
-
-
-class Mapping:
-    """Where on a surface an image is: the name of its texture coordinates (None: those of the render), and how they are
-    scaled, turned [degrees] and shifted."""
-
-    def __init__(self, uv=None, scale=(1, 1), rotation=0.0, offset=(0, 0), wrap="repeat", filter="bilinear"):
-        self.keys = {"uv_scale": list(scale), "uv_rotation": rotation, "uv_offset": list(offset), "wrap": wrap,
-                     "filter": filter}
-        self.uv = uv
-
-    def __eq__(self, other):
-        return self.keys == other.keys and self.uv == other.uv
-
-
-class Value:
-    """A constant of shape (4,), or an image of (H, W, 4) and its mapping; linear. `source` is the image of Blender that it
-    is without change, `is_color_attribute` whether it is the colour of vertices times the constant."""
-
-    def __init__(self, pixels, mapping=None, source=None, is_color_attribute=False):
-        self.pixels = numpy.asarray(pixels, numpy.float32)
-        self.mapping = mapping
-        self.source = source
-        self.is_color_attribute = is_color_attribute
-
-    @property
-    def is_constant(self):
-        return self.pixels.ndim == 1
-
-    @property
-    def color(self):
-        """(3,), of a constant."""
-        return self.pixels[:3].astype(float)
-
-    @property
-    def number(self):
-        """Of a constant."""
-        return float(self.pixels[:3] @ _LUMINANCE) if numpy.ptp(self.pixels[:3]) > 0 else float(self.pixels[0])
-
-
-def constant(value):
-    """A Value of a number, or of a colour with its alpha or without."""
-    if isinstance(value, (int, float)):
-        return Value([value, value, value, 1.0])
-    numbers = list(value)[:4]
-    return Value(numbers + [1.0] * (4 - len(numbers)))
 
 
 class Reader:
@@ -180,15 +124,20 @@ class Reader:
             self._groups = groups
 
     def _of_node(self, node, output):
+        if node.type in spatial.READERS:
+            return self._in_space(node, output)
         reader = getattr(self, "_read_" + node.type.lower(), None)
         if reader is None:
             self.notice(node, f"candela does not know nodes of the type {node.bl_label}; its value is 0.5")
             return constant(0.5)
-        if node.type in _SPATIAL and not self.points:
+        return reader(node, output)
+
+    def _in_space(self, node, output):
+        if not self.points:
             self._want_points()
             self.notice(node, "its mesh has too many triangles for textures in space; its value is 0.5")
             return constant(0.5)
-        return reader(node, output)
+        return spatial.READERS[node.type](self, node, output)
 
     # Each: the Value of an output of a node of this type.
 
@@ -200,7 +149,7 @@ class Reader:
 
     def _read_vertex_color(self, node, output):
         if self.points and self.points.colors is not None:
-            return self._at_points(self.points.colors)
+            return spatial.at_points(self.points.colors)
         return Value([1, 1, 1, 1], is_color_attribute=not self.points)
 
     def _read_attribute(self, node, output):
@@ -215,8 +164,8 @@ class Reader:
         pixels = pixels_of(node.image, self._notices)
         if self.points:
             linked = node.inputs["Vector"].is_linked
-            place = self._vector(node) if linked else self.points.uv()
-            value = self._at_points(looked_up(pixels, place, node.extension, node.interpolation == "Closest"))
+            place = spatial.place_of(self, node) if linked else self.points.uv()
+            value = spatial.at_points(looked_up(pixels, place, node.extension, node.interpolation == "Closest"))
             return Value(numpy.repeat(value.pixels[..., 3:], 4, -1), value.mapping) if output.name == "Alpha" else value
         mapping = self._mapping(node)
         if output.name == "Alpha":
@@ -258,7 +207,7 @@ class Reader:
         offset = inputs["Location"].default_value[:2] if node.vector_type == "POINT" else (0, 0)
         return {"scale": tuple(inputs["Scale"].default_value[:2]), "rotation": math.degrees(z), "offset": tuple(offset)}
 
-    def _combine(self, node, values, function):
+    def combine(self, node, values, function):
         """A function of several values, pixel by pixel."""
         images = [value for value in values if not value.is_constant]
         if any(value.is_color_attribute for value in values):
@@ -269,62 +218,6 @@ class Reader:
             self.notice(node, "candela does not combine images of several sizes or places; the first is used")
             values = [v if v.is_constant or v is images[0] else Value(v.pixels.mean((0, 1))) for v in values]
         return Value(function(*(value.pixels for value in values)), images[0].mapping if images else None)
-
-    # At points.
-
-    def _at_points(self, values):
-        """The Value of numbers (side, side), or of vectors or colours (side, side, 3 or 4), at the points."""
-        values = numpy.asarray(values, numpy.float32)
-        if values.ndim == 2:
-            values = numpy.repeat(values[..., None], 3, -1)
-        if values.shape[-1] == 3:
-            values = numpy.concatenate([values, numpy.ones_like(values[..., :1])], -1)
-        return Value(values, Mapping(uv=IN_SPACE, wrap="clamp"))
-
-    def _amount(self, node, name, default=0.0):
-        """A number that is the same at all points."""
-        if name not in node.inputs:
-            return default
-        value = self.read(node.inputs[name])
-        if not value.is_constant:
-            self.notice(node, f"candela wants a constant {name}; the mean is used")
-            value = Value(value.pixels.mean((0, 1)))
-        return _gray(value).number
-
-    def _vector(self, node, scale=1.0):
-        """(side, side, 3): where a texture is looked up."""
-        linked = node.inputs["Vector"].is_linked
-        place = self.read(node.inputs["Vector"]).pixels[..., :3] if linked else self.points.generated
-        return numpy.broadcast_to(place * numpy.float32(scale), (self.points.side, self.points.side, 3)).astype(numpy.float32)
-
-    def _coordinates(self, node, dimensions, scale=1.0):
-        """What a noise of these dimensions is a function of."""
-        if dimensions == "4D":
-            self.notice(node, "candela knows noises of up to three dimensions; its W is left out")
-        if dimensions == "1D":
-            w = _gray(self.read(node.inputs["W"])).pixels[..., 0] * numpy.float32(scale)
-            return [numpy.broadcast_to(w, (self.points.side, self.points.side)).astype(numpy.float32)]
-        place = self._vector(node, scale)
-        return [place[..., i] for i in range(2 if dimensions == "2D" else 3)]
-
-    def _read_tex_coord(self, node, output):
-        if output.name == "Object" and node.object is not None:
-            self.notice(node, "candela knows coordinates of the object itself, not those of another")
-        found = {"Generated": "generated", "Object": "object", "Normal": "normal"}.get(output.name)
-        if found is None and output.name != "UV":
-            self.notice(node, f"candela has no texture coordinates {output.name}; they are Generated")
-            found = "generated"
-        return self._at_points(getattr(self.points, found) if found is not None else self.points.uv())
-
-    def _read_uvmap(self, node, output):
-        return self._at_points(self.points.uv(node.uv_map))
-
-    def _read_new_geometry(self, node, output):
-        if output.name in {"Position", "Normal", "True Normal"}:
-            self.notice(node, f"candela has {output.name} in the object's own space here")
-            return self._at_points(self.points.object if output.name == "Position" else self.points.normal)
-        self.notice(node, f"candela does not know {output.name}; its value is 0.5")
-        return constant(0.5)
 
     def _read_mapping(self, node, output):
         scale, location = (self.read(node.inputs[name]) if name in node.inputs and node.inputs[name].enabled
@@ -345,88 +238,20 @@ class Reader:
             else:
                 result = (place * size) @ turn.T + (moved if node.vector_type == "POINT" else 0)
             return numpy.concatenate([result, numpy.ones_like(result[..., :1])], -1)
-        return self._combine(node, [self.read(node.inputs["Vector"]), scale, location], mapped)
+        return self.combine(node, [self.read(node.inputs["Vector"]), scale, location], mapped)
 
     def _read_vect_math(self, node, output):
         function = _VECTOR_MATH.get(node.operation)
         if function is None:
             self.notice(node, f"candela does not know the operation {node.operation}; its first input is used")
             return self.read(node.inputs[0])
-        scale = _gray(self.read(node.inputs["Scale"])) if "Scale" in node.inputs else constant(1.0)
+        scale = gray(self.read(node.inputs["Scale"])) if "Scale" in node.inputs else constant(1.0)
 
         def result(a, b, s):
             found = function(a[..., :3], b[..., :3], s[..., :3])
             found = numpy.broadcast_to(found, (*found.shape[:-1], 3))
             return numpy.concatenate([found, numpy.ones_like(found[..., :1])], -1)
-        return self._combine(node, [self.read(node.inputs[0]), self.read(node.inputs[1]), scale], result)
-
-    def _read_tex_noise(self, node, output):
-        if getattr(node, "noise_type", "FBM") != "FBM":
-            self.notice(node, f"candela knows noises of the type fBM, not {node.noise_type}")
-        place = self._coordinates(node, node.noise_dimensions, self._amount(node, "Scale"))
-        return self._at_points(procedural.noise(
-            place, min(max(self._amount(node, "Detail"), 0.0), 15.0), min(max(self._amount(node, "Roughness"), 0.0), 1.0),
-            self._amount(node, "Lacunarity", 2.0), self._amount(node, "Distortion"), getattr(node, "normalize", True),
-            output.name == "Color"))
-
-    def _read_tex_white_noise(self, node, output):
-        place = self._coordinates(node, node.noise_dimensions)
-        if output.name != "Color":
-            return self._at_points(procedural.white_noise(*place))
-        turned = [place[i:] + place[:i] for i in range(len(place))]
-        return self._at_points(numpy.stack([procedural.white_noise(*(turned * 3)[i]) for i in range(3)], -1))
-
-    def _read_tex_voronoi(self, node, output):
-        dimensions = node.voronoi_dimensions
-        if dimensions == "1D":
-            self.notice(node, "candela knows Voronoi textures of two and three dimensions")
-            dimensions = "2D"
-        if node.feature not in {"F1", "F2", "DISTANCE_TO_EDGE"}:
-            self.notice(node, f"candela does not know the feature {node.feature}; it is F1")
-        if self._amount(node, "Detail") != 0:
-            self.notice(node, "candela has no octaves of Voronoi textures; the first is used")
-        place = self._coordinates(node, dimensions, self._amount(node, "Scale"))
-        randomness = min(max(self._amount(node, "Randomness", 1.0), 0.0), 1.0)
-        by_pcg = bpy.app.version >= (5, 0, 0)
-        if node.feature == "DISTANCE_TO_EDGE":
-            return self._at_points(procedural.voronoi_edge(place, randomness, node.normalize, by_pcg))
-        if output.name not in {"Distance", "Color"}:
-            self.notice(node, f"candela does not know its {output.name}; it is Distance")
-        value, color = procedural.voronoi(place, node.feature == "F2", node.distance, self._amount(node, "Exponent", 0.5),
-                                          randomness, node.normalize, by_pcg)
-        return self._at_points(color if output.name == "Color" else value)
-
-    def _read_tex_checker(self, node, output):
-        value = self._at_points(procedural.checker(self._vector(node, self._amount(node, "Scale"))))
-        if output.name != "Color":
-            return value
-        colors = [value, self.read(node.inputs["Color1"]), self.read(node.inputs["Color2"])]
-        return self._combine(node, colors, lambda t, a, b: t * a + (1 - t) * b)
-
-    def _read_tex_gradient(self, node, output):
-        return self._at_points(procedural.gradient(self._vector(node), node.gradient_type))
-
-    def _read_tex_magic(self, node, output):
-        color = procedural.magic(self._vector(node, self._amount(node, "Scale")), node.turbulence_depth,
-                                 self._amount(node, "Distortion"))
-        return self._at_points(color if output.name == "Color" else color.mean(-1))
-
-    def _read_tex_wave(self, node, output):
-        direction = node.bands_direction if node.wave_type == "BANDS" else node.rings_direction
-        return self._at_points(procedural.wave(
-            self._vector(node, self._amount(node, "Scale")), node.wave_type, direction, node.wave_profile,
-            *(self._amount(node, name) for name in ("Phase Offset", "Distortion", "Detail", "Detail Scale",
-                                                    "Detail Roughness"))))
-
-    def _read_tex_brick(self, node, output):
-        mortar, tint = (self._at_points(value) for value in procedural.brick(
-            self._vector(node, self._amount(node, "Scale")),
-            *(self._amount(node, name) for name in ("Mortar Size", "Mortar Smooth", "Bias", "Brick Width", "Row Height")),
-            node.offset, node.offset_frequency, node.squash, node.squash_frequency))
-        if output.name != "Color":
-            return mortar
-        colors = [mortar, tint, *(self.read(node.inputs[name]) for name in ("Color1", "Color2", "Mortar"))]
-        return self._combine(node, colors, lambda m, t, a, b, c: ((1 - t) * a + t * b) * (1 - m) + m * c)
+        return self.combine(node, [self.read(node.inputs[0]), self.read(node.inputs[1]), scale], result)
 
     # Of images, of what is computed at points, and of constants alike.
 
@@ -435,9 +260,9 @@ class Reader:
         if function is None:
             self.notice(node, f"candela does not know the operation {node.operation}; its first input is used")
             return self.read(node.inputs[0])
-        values = [_gray(self.read(node.inputs[i])) for i in range(3)]
+        values = [gray(self.read(node.inputs[i])) for i in range(3)]
         end = (lambda x: numpy.clip(x, 0, 1)) if node.use_clamp else (lambda x: x)
-        return self._combine(node, values, lambda a, b, c: end(function(a, b, c)))
+        return self.combine(node, values, lambda a, b, c: end(function(a, b, c)))
 
     def _read_mix(self, node, output):
         if node.data_type not in {"RGBA", "FLOAT"}:
@@ -454,7 +279,7 @@ class Reader:
         if function is None:
             self.notice(node, f"candela does not know the blend mode {blend}; it mixes")
             function = _BLENDS["MIX"]
-        share, a, b = _gray(self.read(factor)), self.read(first), self.read(second)
+        share, a, b = gray(self.read(factor)), self.read(first), self.read(second)
         if blend == "MULTIPLY" and share.is_constant and share.number == 1:
             for attribute, other in ((a, b), (b, a)):
                 if attribute.is_color_attribute and not other.is_color_attribute:
@@ -464,37 +289,37 @@ class Reader:
             t = numpy.clip(t, 0, 1)
             result = x * (1 - t) + function(x, y) * t
             return numpy.clip(result, 0, 1) if clamp else result
-        return self._combine(node, [share, a, b], mixed)
+        return self.combine(node, [share, a, b], mixed)
 
     def _read_invert(self, node, output):
-        values = [_gray(self.read(node.inputs[0])), self.read(node.inputs[1])]
-        return self._combine(node, values, lambda t, x: x * (1 - t) + (1 - x) * t)
+        values = [gray(self.read(node.inputs[0])), self.read(node.inputs[1])]
+        return self.combine(node, values, lambda t, x: x * (1 - t) + (1 - x) * t)
 
     def _read_gamma(self, node, output):
-        values = [self.read(node.inputs[0]), _gray(self.read(node.inputs[1]))]
-        return self._combine(node, values, lambda x, g: numpy.power(numpy.maximum(x, 0), g))
+        values = [self.read(node.inputs[0]), gray(self.read(node.inputs[1]))]
+        return self.combine(node, values, lambda x, g: numpy.power(numpy.maximum(x, 0), g))
 
     def _read_brightcontrast(self, node, output):
-        values = [self.read(node.inputs[0]), _gray(self.read(node.inputs[1])), _gray(self.read(node.inputs[2]))]
-        return self._combine(node, values, lambda x, b, c: numpy.maximum(x * (1 + c) + b - c / 2, 0))
+        values = [self.read(node.inputs[0]), gray(self.read(node.inputs[1])), gray(self.read(node.inputs[2]))]
+        return self.combine(node, values, lambda x, b, c: numpy.maximum(x * (1 + c) + b - c / 2, 0))
 
     def _read_clamp(self, node, output):
-        values = [_gray(self.read(node.inputs[i])) for i in range(3)]
-        return self._combine(node, values, numpy.clip)
+        values = [gray(self.read(node.inputs[i])) for i in range(3)]
+        return self.combine(node, values, numpy.clip)
 
     def _read_map_range(self, node, output):
         if node.data_type != "FLOAT" or node.interpolation_type != "LINEAR":
             self.notice(node, "candela knows linear ranges of numbers; the value is used as it is")
             return self.read(node.inputs["Value"])
-        values = [_gray(self.read(socket)) for socket in list(node.inputs)[:5]]
+        values = [gray(self.read(socket)) for socket in list(node.inputs)[:5]]
 
         def mapped(x, a, b, c, d):
             t = (x - a) / numpy.where(b == a, 1, b - a)
             return c + (numpy.clip(t, 0, 1) if node.clamp else t) * (d - c)
-        return self._combine(node, values, mapped)
+        return self.combine(node, values, mapped)
 
     def _read_valtorgb(self, node, output):
-        value = _gray(self.read(node.inputs[0]))
+        value = gray(self.read(node.inputs[0]))
         steps = numpy.linspace(0, 1, 1025)
         table = numpy.array([node.color_ramp.evaluate(float(step)) for step in steps])
         if output.name == "Alpha":
@@ -503,27 +328,27 @@ class Reader:
         def ramp(x):
             at = numpy.clip(x[..., 0], 0, 1)
             return numpy.stack([numpy.interp(at, steps, table[:, i]) for i in range(4)], -1)
-        return self._combine(node, [value], ramp)
+        return self.combine(node, [value], ramp)
 
     def _read_separate_color(self, node, output):
         if getattr(node, "mode", "RGB") != "RGB":
             self.notice(node, "candela separates red, green and blue only")
         channel = [socket.name for socket in node.outputs].index(output.name)
-        return self._combine(node, [self.read(node.inputs[0])], lambda x: numpy.repeat(x[..., channel:channel + 1], 4, -1))
+        return self.combine(node, [self.read(node.inputs[0])], lambda x: numpy.repeat(x[..., channel:channel + 1], 4, -1))
 
     _read_seprgb = _read_sepxyz = _read_separate_color
 
     def _read_combine_color(self, node, output):
-        values = [_gray(self.read(node.inputs[i])) for i in range(3)]
-        return self._combine(node, values, lambda r, g, b: _broadcast(r, g, b))
+        values = [gray(self.read(node.inputs[i])) for i in range(3)]
+        return self.combine(node, values, lambda r, g, b: _broadcast(r, g, b))
 
     _read_combrgb = _read_combxyz = _read_combine_color
 
     def _read_rgbtobw(self, node, output):
-        return _gray(self.read(node.inputs[0]))
+        return gray(self.read(node.inputs[0]))
 
     def _read_hue_sat(self, node, output):
-        hue, saturation, value, share = (_gray(self.read(node.inputs[i])) for i in range(4))
+        hue, saturation, value, share = (gray(self.read(node.inputs[i])) for i in range(4))
         if not (hue.is_constant and abs(hue.number - 0.5) < 1e-6):
             self.notice(node, "candela does not turn hues")
 
@@ -536,29 +361,9 @@ class Reader:
             rgb = (top - (top - x[..., :3]) * ratio) * v[..., :1]
             rgb = x[..., :3] * (1 - t[..., :1]) + numpy.maximum(rgb, 0) * t[..., :1]
             return numpy.concatenate([rgb, numpy.broadcast_to(x[..., 3:], rgb[..., :1].shape)], -1)
-        return self._combine(node, [self.read(node.inputs[4]), saturation, value, share], changed)
+        return self.combine(node, [self.read(node.inputs[4]), saturation, value, share], changed)
 
 
 def _broadcast(r, g, b):
     r, g, b = numpy.broadcast_arrays(r[..., 0], g[..., 0], b[..., 0])
     return numpy.stack([r, g, b, numpy.ones_like(r)], -1)
-
-
-def _gray(value):
-    """The number that a colour is where a number is wanted: its luminance."""
-    if value.is_constant:
-        return constant(value.number)
-    if numpy.ptp(value.pixels[..., :3], -1).max() == 0:
-        return Value(value.pixels, value.mapping, value.source)
-    return Value(numpy.repeat((value.pixels[..., :3] @ _LUMINANCE)[..., None], 4, -1), value.mapping)
-
-
-gray = _gray
-
-
-def as_codes(value, notices):
-    """(H, W, 4), and "srgb" or "linear": the image of a Value as it is best kept."""
-    raw = raw_pixels(value.source) if value.source is not None else None
-    if raw is not None and raw.dtype == numpy.uint8:
-        return raw, "srgb" if is_srgb(value.source, notices) else "linear"
-    return value.pixels, "linear"
