@@ -1,9 +1,32 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Procedural textures, with the values that Cycles has for them. A point is an array of shape (..., 3), a texture's value
 one of shape (...), from 0 to 1 unless a function says otherwise."""
+import collections
+import functools
+import hashlib
+
 import numpy
 
 _WORD = numpy.uint32
+
+_KEPT = 32  # Results, of some 4 or 12 MB each.
+_results = collections.OrderedDict()  # The one that was used last is at the end.
+
+
+def _remembered(function):
+    """Keeps what a texture was at the same points: each frame of an animation asks for it again. The function's first
+    argument is a list of coordinates, the others can be hashed."""
+    @functools.wraps(function)
+    def known(coordinates, *settings):
+        key = (function, settings, *((x.shape, hashlib.blake2b(numpy.ascontiguousarray(x)).digest()) for x in coordinates))
+        found = _results.pop(key, None)  # Another thread, which renders while a viewport reads, may do the same.
+        if found is None:
+            found = function(coordinates, *settings)
+        _results[key] = found
+        while len(_results) > _KEPT:
+            _results.popitem(last=False)
+        return found
+    return known
 
 
 def _turned(x, bits):
@@ -96,6 +119,7 @@ def _shift(seed, count):
     return [100 + 100 * _random(numpy.full(1, seed), numpy.full(1, i)) for i in range(count)]
 
 
+@_remembered
 def noise(coordinates, detail, roughness, lacunarity, distortion, normalize, is_color=False):
     """Of one to three coordinates. is_color: (..., 3), the value and two more, of other places."""
     count = len(coordinates)
@@ -254,6 +278,7 @@ class _Cells:
             yield offset, offset.astype(numpy.float32) + moved - self._local
 
 
+@_remembered
 def voronoi(coordinates, is_second, metric, exponent, randomness, normalize, by_pcg):
     """The distance to the nearest of the points of Worley's cells, or the second, and (..., 3) random colours of its cell.
     Of two or three coordinates. metric: as Blender names it. by_pcg: as since Blender 5.0."""
@@ -277,6 +302,7 @@ def voronoi(coordinates, is_second, metric, exponent, randomness, normalize, by_
     return value, numpy.stack(colors, -1)
 
 
+@_remembered
 def voronoi_edge(coordinates, randomness, normalize, by_pcg):
     """The distance to the nearest edge between Worley's cells."""
     cells = _Cells(coordinates, randomness, by_pcg)

@@ -2,6 +2,8 @@
 
 usage: python tests/blender/textures_test.py FOLDER PROGRAM [unittest's options]     See scenes.py.
 """
+import unittest
+
 import bpy
 import numpy
 from scenes import SceneTest, add, add_camera, addon, centre, principled, run
@@ -188,6 +190,21 @@ class ValuesTest(SceneTest):
                 exponent = {"Exponent": 1.5} if metric == "MINKOWSKI" else {}
                 self.expect(found, "Voronoi", output, voronoi_dimensions=f"{dimensions}D", feature=feature, distance=metric,
                             normalize=normalize, Scale=5.0, Randomness=0.8, **exponent)
+
+
+class RememberedTest(unittest.TestCase):
+    def test_the_same_points_are_asked_for_once(self):
+        def noise_at(shift, detail=2.0):
+            return procedural.noise([PLACE[..., i] + numpy.float32(shift) for i in range(3)], detail, 0.5, 2.0, 0.0, True)
+
+        first = noise_at(0)
+        self.assertIs(noise_at(0), first)
+        self.assertIsNot(noise_at(0, detail=3.0), first)
+        for i in range(1, 40):
+            self.assertFalse(numpy.array_equal(noise_at(i), first))
+        again = noise_at(0)
+        self.assertIsNot(again, first, "it was kept for ever")
+        numpy.testing.assert_array_equal(again, first)
 
 
 class PlacesTest(SceneTest):
