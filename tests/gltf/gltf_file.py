@@ -8,6 +8,8 @@ import json
 import struct
 from urllib.parse import quote
 
+import ktx
+
 # Number of glTF, letter of struct, bytes; of each kind of component.
 COMPONENTS = {"i8": (5120, "b", 1), "u8": (5121, "B", 1), "i16": (5122, "h", 2), "u16": (5123, "H", 2),
               "u32": (5125, "I", 4), "f32": (5126, "f", 4)}
@@ -16,6 +18,10 @@ VERTICES, INDICES = 34962, 34963  # What a view is for.
 NEAREST, LINEAR = 9728, 9729
 REPEAT, MIRROR, CLAMP = 10497, 33648, 33071
 POINTS, LINES, LINE_LOOP, LINE_STRIP, TRIANGLES, STRIP, FAN = range(7)
+
+
+def media_type(image):
+    return "image/ktx2" if image.startswith(ktx.SIGNATURE) else "image/png"
 
 
 def data_uri(kind, data):
@@ -27,7 +33,7 @@ class GltfFile:
         self.json = {"asset": {"version": "2.0", "generator": "candela: tests/gltf/make_models.py"},
                      "scene": 0, "scenes": [{"nodes": []}]}
         self.binary = bytearray()
-        self.pngs = []  # The bytes of each image.
+        self.images = []  # The bytes of each: a PNG or a KTX 2 file.
         self.used, self.required = set(), set()  # Extensions.
         self.samplers = {}
 
@@ -93,19 +99,22 @@ class GltfFile:
 
     # --- Materials --------------------------------------------------------------------------------------------------
 
-    def image(self, png):
-        self.pngs.append(png)
+    def image(self, data):
+        self.images.append(data)
         return self.add("images", {})
 
-    def texture(self, png, mag=NEAREST, wrap=(REPEAT, REPEAT), source=None):
-        """A texture of a PNG file's bytes, or of an image that is there already."""
+    def texture(self, data, mag=NEAREST, wrap=(REPEAT, REPEAT), source=None):
+        """A texture of an image's bytes, or of an image that is there already."""
         key = (mag, *wrap)
         if key not in self.samplers:
             smaller = NEAREST if mag == NEAREST else LINEAR
             self.samplers[key] = self.add("samplers", {"magFilter": mag, "minFilter": smaller, "wrapS": wrap[0],
                                                        "wrapT": wrap[1]})
-        source = self.image(png) if source is None else source
-        return self.add("textures", {"sampler": self.samplers[key], "source": source})
+        item = {"source": self.image(data) if source is None else source}
+        if media_type(self.images[item["source"]]) == "image/ktx2":
+            self.required.add("KHR_texture_basisu")
+            item = {"extensions": {"KHR_texture_basisu": item}}
+        return self.add("textures", {"sampler": self.samplers[key], **item})
 
     def material(self, extensions=None, required=(), **properties):
         """A material; extensions by name without KHR_materials_. What is in `required` must be understood."""
@@ -153,11 +162,11 @@ class GltfFile:
 
     def write_binary(self, path):
         document, binary = self.document(), bytearray(self.binary)
-        for image, png in zip(document.get("images", []), self.pngs):
+        for image, data in zip(document.get("images", []), self.images):
             binary += bytes(-len(binary) % 4)
-            document["bufferViews"].append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(png)})
-            image.update(bufferView=len(document["bufferViews"]) - 1, mimeType="image/png")
-            binary += png
+            document["bufferViews"].append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(data)})
+            image.update(bufferView=len(document["bufferViews"]) - 1, mimeType=media_type(data))
+            binary += data
         binary += bytes(-len(binary) % 4)
         document["buffers"] = [{"byteLength": len(binary)}]
         text = json.dumps(document, separators=(",", ":")).encode("ascii")
@@ -170,9 +179,10 @@ class GltfFile:
         binary = path.with_suffix(".bin")
         binary.write_bytes(self.binary)
         document["buffers"] = [{"byteLength": len(self.binary), "uri": quote(binary.name)}]
-        for index, (image, png) in enumerate(zip(document.get("images", []), self.pngs)):
-            picture = path.with_name(f"{path.stem} {index}.png" if " " in path.stem else f"{path.stem}_{index}.png")
-            picture.write_bytes(png)
+        for index, (image, data) in enumerate(zip(document.get("images", []), self.images)):
+            kind, space = media_type(data).removeprefix("image/"), " " if " " in path.stem else "_"
+            picture = path.with_name(f"{path.stem}{space}{index}.{kind}")
+            picture.write_bytes(data)
             image["uri"] = quote(picture.name)
         path.write_text(json.dumps(document, indent=2) + "\n", encoding="ascii")
 
@@ -180,8 +190,8 @@ class GltfFile:
         document = self.document()
         uri = data_uri("application/octet-stream", bytes(self.binary))
         document["buffers"] = [{"byteLength": len(self.binary), "uri": uri}]
-        for image, png in zip(document.get("images", []), self.pngs):
-            image["uri"] = data_uri("image/png", png)
+        for image, data in zip(document.get("images", []), self.images):
+            image["uri"] = data_uri(media_type(data), data)
         path.write_text(json.dumps(document, indent=2) + "\n", encoding="ascii")
 
     def write(self, model_folder, containers):

@@ -2,6 +2,7 @@
 
 import math
 
+import ktx
 from gltf_file import CLAMP, LINEAR, MIRROR, NEAREST, REPEAT
 from stage import DARK, chart, chart_colour, decoded, encoded, linear, model, picture, solid
 
@@ -237,6 +238,40 @@ def texture_encoding_test(stage):
         stage.tile(left, stage.surface(**with_image))
         stage.tile(right, stage.surface(**with_factor))
     stage.tolerate(3, 64)
+
+
+@model("TextureBasisuTest")
+def texture_basisu_test(stage):
+    """In each pair, the image of the left tile is a KTX 2 file of Basis Universal, and that of the right one is a PNG file
+    with the same pixels: plain, under Zstandard, cut within blocks, with alpha, of numbers and not colours."""
+    def faded(column, row):
+        return (*chart_colour(column, row), ALPHAS[column])
+
+    def rough(column, row):
+        return (0, 255 - 30 * row, 10 * column)
+
+    def unlit(**properties):
+        return lambda texture: stage.unlit(texture=texture, **properties)
+
+    def metal(texture):
+        return stage.surface((1, 1, 1), metallic=1, base={"metallicRoughnessTexture": {"index": texture}})
+
+    mask, linear = {"alphaMode": "MASK"}, {"transfer": ktx.LINEAR_TRANSFER}
+    cases = [
+        ("plain", (32, 32), 3, chart_colour, {}, unlit()),
+        ("zstandard", (32, 32), 3, chart_colour, {"scheme": ktx.ZSTANDARD}, unlit()),
+        ("cut", (30, 25), 3, chart_colour, {}, unlit()),
+        ("alpha", (32, 32), 4, faded, {}, unlit(**mask)),
+        ("alpha unread", (32, 32), 4, faded, {"scheme": ktx.ZSTANDARD}, unlit()),
+        ("numbers", (32, 32), 3, rough, linear, metal),
+        ("numbers srgb", (32, 32), 3, rough, {}, metal),  # The slot decides, as for PNG files.
+    ]
+    stage.sun()
+    for left, right, size, channels, function, options, material in stage.pairs(cases):
+        stage.tile(left, material(stage.file.texture(ktx.write(*size, function, channels, **options))))
+        pixels = picture(*size, lambda x, y, f=function: f(x // 4, y // 4), channels)
+        stage.tile(right, material(stage.file.texture(pixels)))
+    stage.tolerate(2, 16)
 
 
 @model("UnlitTest")
