@@ -3,6 +3,7 @@
 here, pixel by pixel, so that candela gets an image again; so is what they make of places, at the points of a mesh."""
 import math
 
+import mathutils
 import numpy
 
 from . import spatial
@@ -195,17 +196,24 @@ class Reader:
         return Mapping(**keys)
 
     def _transform(self, node):
-        inputs = node.inputs
-        if node.vector_type not in {"POINT", "VECTOR"} or any(inputs[name].is_linked for name in ("Scale", "Rotation")):
+        vectors = [self.constant_vector(node.inputs[name]) for name in ("Location", "Rotation", "Scale")]
+        if node.vector_type not in {"POINT", "VECTOR"} or any(vector is None for vector in vectors):
             self._want_points()
             self.notice(node, "candela knows mappings of the type Point, of constants; it is left out")
             return {}
-        x, y, z = inputs["Rotation"].default_value
-        if x != 0 or y != 0:
+        location, rotation, scale = vectors
+        if rotation[:2].any():
             self._want_points()
             self.notice(node, "candela turns texture coordinates about Z only")
-        offset = inputs["Location"].default_value[:2] if node.vector_type == "POINT" else (0, 0)
-        return {"scale": tuple(inputs["Scale"].default_value[:2]), "rotation": math.degrees(z), "offset": tuple(offset)}
+        return {"scale": scale[:2].tolist(), "rotation": math.degrees(rotation[2]),
+                "offset": location[:2].tolist() if node.vector_type == "POINT" else (0, 0)}
+
+    def constant_vector(self, socket):
+        """(3,), if it is the same everywhere, else None."""
+        if not socket.enabled:
+            return numpy.zeros(3)
+        value = self.read(socket)
+        return value.color if value.is_constant else None
 
     def combine(self, node, values, function):
         """A function of several values, pixel by pixel."""
@@ -222,11 +230,11 @@ class Reader:
     def _read_mapping(self, node, output):
         scale, location = (self.read(node.inputs[name]) if name in node.inputs and node.inputs[name].enabled
                            else constant((value,) * 3) for name, value in (("Scale", 1.0), ("Location", 0.0)))
-        if node.inputs["Rotation"].is_linked:
+        angles = self.constant_vector(node.inputs["Rotation"])
+        if angles is None:
             self.notice(node, "candela turns by a constant; it is left out")
-            turn = numpy.eye(3, dtype=numpy.float32)
-        else:
-            turn = numpy.array(node.inputs["Rotation"].default_value.to_matrix(), numpy.float32)
+            angles = numpy.zeros(3)
+        turn = numpy.array(mathutils.Euler(angles).to_matrix(), numpy.float32)
 
         def mapped(place, size, moved):
             place, size, moved = (x[..., :3] for x in (place, size, moved))

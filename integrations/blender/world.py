@@ -61,6 +61,8 @@ def _set_image(scene, node, strength, place, notices):
     links = node.inputs["Vector"].links
     if links and links[0].from_node.type == "MAPPING":
         mapping = links[0].from_node
+        if mapping.inputs["Rotation"].is_linked:
+            notices.add(f'{place}, node "{mapping.name}"', "candela does not know what turns a world; its field is used")
         x, y, z = mapping.inputs["Rotation"].default_value
         turned -= math.degrees(z)
         scaled = any(abs(value - 1) > 1e-6 for value in mapping.inputs["Scale"].default_value)

@@ -130,6 +130,9 @@ class BlenderTest(SceneTest):
         tree.links.new(mapping.outputs[0], texture.inputs["Vector"])
         look(camera, (0, 0, 0), (0, -1, 0))
         self.assertLess(numpy.abs(spot_of(self.render()) - SIZE / 2).max(), 0.5)
+        self.assertEqual(self.notices(), "")
+        tree.links.new(tree.nodes.new("ShaderNodeCombineXYZ").outputs[0], mapping.inputs["Rotation"])
+        self.assertIn("does not know what turns a world", self.notices())
 
     # Cameras.
 

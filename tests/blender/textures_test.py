@@ -101,6 +101,16 @@ class ValuesTest(SceneTest):
                     node.inputs["Location"].default_value = (0.1, 0.2, -0.3)
                 self.expect_read(node)
 
+    def test_mappings_may_be_linked(self):
+        node = self.new_node("Mapping")
+        nodes, links = node.id_data.nodes, node.id_data.links
+        for name, numbers in (("Location", (0.1, 0.2, -0.3)), ("Rotation", (0.3, -0.5, 0.9)), ("Scale", (1.5, 0.7, 2))):
+            source = nodes.new("ShaderNodeCombineXYZ")
+            for socket, number in zip(source.inputs, numbers):
+                socket.default_value = number
+            links.new(source.outputs[0], node.inputs[name])
+        self.expect_read(node)
+
     def test_vector_math(self):
         for operation in ("ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "SCALE", "MINIMUM", "MAXIMUM", "ABSOLUTE", "FLOOR", "FRACTION",
                           "LENGTH", "DISTANCE", "DOT_PRODUCT"):
@@ -263,6 +273,23 @@ class PlacesTest(SceneTest):
         made = addon.materials.read_material(material, addon.notices.Notices(), part.points)
         self.assertEqual(made.values["base_color"].image.shape[:2], (2, 2))
         self.assertEqual(made.values["roughness"].image.shape[:2], (1024, 1024))
+
+    def test_what_moves_an_image_may_be_linked(self):
+        """A constant does so without points, and a texture at them."""
+        material = textured("Image", coordinates="UV")
+        nodes, links = material.node_tree.nodes, material.node_tree.links
+        texture, mapping, source, noise = (nodes.new("ShaderNode" + name) for name in (
+            "TexImage", "Mapping", "CombineXYZ", "TexNoise"))
+        texture.image = bpy.data.images.new("Image", 2, 2)
+        source.inputs[0].default_value, source.inputs[1].default_value = 0.25, -0.5
+        links.new(mapping.outputs[0], texture.inputs["Vector"])
+        links.new(texture.outputs[0], nodes["Principled BSDF"].inputs["Base Color"])
+        links.new(source.outputs[0], mapping.inputs["Location"])
+        made = addon.materials.read_material(material, addon.notices.Notices())
+        self.assertFalse(made.in_space)
+        self.assertEqual(made.values["base_color"].keys["uv_offset"], [0.25, -0.5])
+        links.new(noise.outputs["Color"], mapping.inputs["Location"])
+        self.assertTrue(addon.materials.read_material(material, addon.notices.Notices()).in_space)
 
     def test_an_image_may_be_where_an_object_is(self):
         """By Object coordinates, of which an image takes two: it repeats each metre."""
