@@ -4,13 +4,19 @@ one of shape (...), from 0 to 1 unless a function says otherwise."""
 import collections
 import functools
 import hashlib
+import threading
 
 import numpy
 
 _WORD = numpy.uint32
 
-_KEPT = 32  # Results, of some 4 or 12 MB each.
-_results = collections.OrderedDict()  # The one that was used last is at the end.
+_KEPT = 256 << 20  # Bytes of results.
+_results = collections.OrderedDict()  # Arrays, or tuples of them; the one that was used last is at the end.
+_lock = threading.Lock()  # A viewport may read while another thread renders.
+
+
+def _bytes(result):
+    return sum(array.nbytes for array in (result if isinstance(result, tuple) else (result,)))
 
 
 def _remembered(function):
@@ -19,12 +25,14 @@ def _remembered(function):
     @functools.wraps(function)
     def known(coordinates, *settings):
         key = (function, settings, *((x.shape, hashlib.blake2b(numpy.ascontiguousarray(x)).digest()) for x in coordinates))
-        found = _results.pop(key, None)  # Another thread, which renders while a viewport reads, may do the same.
+        with _lock:
+            found = _results.pop(key, None)
         if found is None:
             found = function(coordinates, *settings)
-        _results[key] = found
-        while len(_results) > _KEPT:
-            _results.popitem(last=False)
+        with _lock:
+            _results[key] = found
+            while len(_results) > 1 and sum(_bytes(result) for result in _results.values()) > _KEPT:
+                _results.popitem(last=False)
         return found
     return known
 
