@@ -1,6 +1,7 @@
 // Albedo without its noise: how little remains, and what must not change.
 #include "denoise/smooth_albedo.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -54,6 +55,28 @@ TEST(SmoothAlbedo, OfNoiseLittleRemains) {
         truth);
     EXPECT_NEAR(before, double(VARIANCE), 0.05 * double(VARIANCE));
     EXPECT_LT(mean_square(smooth_albedo(owned.picture(), PICTURE), truth), 0.1 * before);
+}
+
+// Columns alternate by d in each channel: the square of the difference, 3 d^2, is less than the variances of
+// two pixels together. All weights are 1, and the mean is that of three of the five columns and of the other
+// two.
+TEST(SmoothAlbedo, WhatVariancesExplainIsNoEdge) {
+    constexpr float D = 0.1f;
+    const auto truth = [](uint32_t x) { return x % 2 == 0 ? 0.4f : 0.4f + D; };
+    Owned owned(truth);
+    for (std::vector<float>& plane : owned.albedo) {
+        for (uint32_t i = 0; i < WIDTH * HEIGHT; ++i)
+            plane[i] = truth(i % WIDTH);
+    }
+    std::ranges::fill(owned.variance, 2.0f * D * D);
+    const std::vector<vec3> smooth = smooth_albedo(owned.picture(), PICTURE);
+    for (uint32_t y = 0; y < HEIGHT; ++y) {
+        for (uint32_t x = 2; x < WIDTH - 2; ++x) {
+            const float mean = 0.4f + (x % 2 == 0 ? 0.4f : 0.6f) * D;
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(smooth[size_t{y} * WIDTH + x][c], mean, 1e-6f) << x << ' ' << y;
+        }
+    }
 }
 
 // Ten deviations apart, patches across the edge differ by more than 30 times what their noise explains, or by
