@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """How far denoised pictures are from the truth, for each scene of the gallery: their relMSE over that of the noisy ones.
 
-The relMSE is that of `candela compare`, to a reference of other samples (another seed). The reference's own noise, by its
-Variance, is taken off both. Both ways, blended with the noisy picture; `first hits` are guided by Albedo and N, `guides` by
---aov denoising. Needs numpy, and Open Image Denoise where candela finds it (cmake/denoiser.sh).
+The relMSE is that of `candela compare`, to a reference of other samples: the mean of two pictures of half of them, whose
+difference shows the reference's own noise, which is taken off both. Both ways, blended with the noisy picture; `first
+hits` are guided by Albedo and N, `guides` by --aov denoising. Needs numpy, and Open Image Denoise where candela finds it
+(cmake/denoiser.sh).
 
 usage: denoising.py CANDELA [--scenes NAME,...] [--spp 4,16,64] [--reference-spp N] [--width N] [--seeds N]
                     [--keep FOLDER] [--option=OPTION of denoise]... [--at-most RATIO]
@@ -74,8 +75,9 @@ class Bench:
 
     def measure(self, scene, spp):
         """Ratios of denoised over noisy, for each way; the medians of the seeds."""
-        path = self.render(scene, f"{scene}-reference", self.options.reference_spp, 1000, "variance")
-        reference, noise = layer(path, ""), layer(path, "Variance.")
+        halves = [layer(self.render(scene, f"{scene}-reference-{seed}", self.options.reference_spp // 2, seed, "albedo"), "")
+                  for seed in (1000, 1001)]
+        reference, noise = numpy.mean(halves, axis=0), numpy.var(halves, axis=0, ddof=1) / 2
         ratios = {name: [] for name in WAYS}
         for seed in range(self.options.seeds):
             noisy = self.render(scene, f"{scene}-{spp}-{seed}", spp, seed, "albedo,n,denoising,variance,samples")

@@ -119,15 +119,15 @@ def seconds_per_sample(renderer, job, work):
     return renderer.render(job, CALIBRATION_SPP, 0, work / "calibration.exr")["cpu"] / CALIBRATION_SPP
 
 
-def converged(renderer, job, pace, seconds, work):
+def converged(renderer, job, pace, seconds, work, seed=REFERENCE_SEED):
     """The renderer's picture after that CPU time, and its samples per pixel; kept in the folder `work`."""
-    told = f"{job.scene.read_text(encoding='utf-8')} {job.depth} {job.width} {seconds} {renderer.version}"
+    told = f"{job.scene.read_text(encoding='utf-8')} {job.depth} {job.width} {seconds} {seed} {renderer.version}"
     stem = f"{job.scene.stem}-{renderer.name}-{hashlib.sha256(told.encode()).hexdigest()[:8]}"
     picture, figures = work / f"{stem}.exr", work / f"{stem}.json"
     if not figures.exists():
         spp = max(2, round(seconds / pace))
         log(f"{job.scene.stem}: {renderer.name} renders its converged picture, {spp} samples per pixel")
-        renderer.render(job, spp, REFERENCE_SEED, picture)
+        renderer.render(job, spp, seed, picture)
         figures.write_text(json.dumps({"spp": spp}), encoding="utf-8")
     return exr.read(picture), json.loads(figures.read_text(encoding="utf-8"))["spp"]
 

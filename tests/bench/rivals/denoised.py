@@ -3,8 +3,9 @@
 
 Both denoise by Open Image Denoise, each with its own guides and its own way of using it. candela gets --spp samples, and
 Cycles as many as take, with its denoiser, the CPU time that candela took with its own; starting, and preparing scene and
-kernels, are excluded. Each picture is compared with its renderer's own converged one, as in compare.py: by relMSE and by
-FLIP (Andersson et al. 2021, of HDR pictures). Figures are medians over the seeds.
+kernels, are excluded. Each picture is compared with its renderer's own converged one, the mean of two: by relMSE, off
+which the noise is taken that these show by their difference, and by FLIP (Andersson et al. 2021, of HDR pictures).
+Figures are medians over the seeds.
 
 usage: denoised.py CANDELA [SCENE...]      Needs numpy and flip-evaluator, Blender (as compare.py), and Open Image Denoise
 where candela finds it (cmake/denoiser.sh).
@@ -22,7 +23,6 @@ import compare
 import exr
 import flip_evaluator
 import numpy
-import pictures
 from renderers import HERE, RR_DEPTH, Candela, Cycles, Job, last_json, run, run_in_blender
 
 SCENES = ("cornell-box", "many-lights", "principled", "room", "lit-glass")
@@ -35,7 +35,7 @@ def arguments():
     parser.add_argument("--spp", type=int, default=16, help="of candela (default: 16)")
     parser.add_argument("--seeds", type=int, default=3, help="pictures of each (default: 3)")
     parser.add_argument("--reference", type=float, default=160, metavar="SECONDS",
-                        help="CPU time of converged pictures [s] (default: 160)")
+                        help="CPU time of the converged pictures of a renderer [s] (default: 160)")
     parser.add_argument("--size", type=int, default=512, help="width and height of the pictures (default: 512)")
     parser.add_argument("--blender", default=sys.executable if importlib.util.find_spec("bpy") else "blender",
                         help="as for compare.py")
@@ -71,15 +71,24 @@ def array_of(picture):
     return numpy.array(planes, dtype=numpy.float32).T.reshape(height, width, 3)
 
 
-def layer_of(path, layer):
+def denoised_layer(path):
     width, height, _, channels = exr.read_all(path)
-    return width, height, [channels[layer + c] for c in "RGB"]
+    return width, height, [channels[f"Denoised.{c}"] for c in "RGB"]
 
 
-def errors(picture, reference):
-    """relMSE, and the mean of FLIP."""
-    _, mean, _ = flip_evaluator.evaluate(array_of(reference), array_of(picture), "HDR")
-    return pictures.relmse(picture, reference), mean
+def converged(renderer, job, pace, options):
+    """The mean of two pictures of half the time, and its variance, as they differ."""
+    halves = [array_of(compare.converged(renderer, job, pace, options.reference / 2, options.work, seed)[0])
+              for seed in (compare.REFERENCE_SEED, compare.REFERENCE_SEED + 1)]
+    return numpy.mean(halves, axis=0), numpy.var(halves, axis=0, ddof=1) / 2
+
+
+def errors(picture, reference, noise):
+    """relMSE, as pictures.relmse() without the reference's noise, and the mean of FLIP."""
+    image = array_of(picture)
+    _, flip, _ = flip_evaluator.evaluate(reference, image, "HDR")
+    squares = ((image - reference) ** 2 - noise) / (reference**2 + 0.01 * reference.mean() ** 2)
+    return float(squares.mean(dtype=numpy.float64)), flip
 
 
 def measure(name, candela, cycles, options):
@@ -87,8 +96,7 @@ def measure(name, candela, cycles, options):
     path, depth = compare.SCENES[name]
     job = Job(path, depth, options.size, os.cpu_count())
     paces = [compare.seconds_per_sample(r, job, options.work) for r in (candela, cycles)]
-    references = [compare.converged(r, job, pace, options.reference, options.work)[0]
-                  for r, pace in zip((candela, cycles), paces)]
+    references = [converged(r, job, pace, options) for r, pace in zip((candela, cycles), paces)]
     output = options.work / "denoised.exr"
     first = 2
     begin = denoised_by_cycles(cycles.blender, job, first, 0, output)
@@ -96,10 +104,10 @@ def measure(name, candela, cycles, options):
     for seed in range(options.seeds):
         compare.log(f"{name}: picture {seed + 1} of {options.seeds}")
         seconds = denoised_by_candela(candela.program, job, options.spp, seed, output)
-        rows["candela"].append((options.spp, seconds, *errors(layer_of(output, "Denoised."), references[0])))
+        rows["candela"].append((options.spp, seconds, *errors(denoised_layer(output), *references[0])))
         spp = max(1, first + round((seconds - begin) / paces[1]))
         seconds = denoised_by_cycles(cycles.blender, job, spp, seed, output)
-        rows["Cycles"].append((spp, seconds, *errors(exr.read(output), references[1])))
+        rows["Cycles"].append((spp, seconds, *errors(exr.read(output), *references[1])))
     return rows
 
 
