@@ -31,6 +31,8 @@ constexpr double DARKNESS = 1e-3;
 // Differences of neighbours agree by a bias alone, whatever the noise: the share of the squared difference by
 // which they do is that of the bias, less what a window of 5 x 5 shows by chance, and more, since edges turn.
 constexpr double CHANCE = 0.2;
+// The noise of a pixel counts by itself as far as it is more than so many times that of the window.
+constexpr double OUTLIER = 4.0;
 // Rows that one step weighs, of those for which it computes moments.
 constexpr uint32_t STRIP_ROWS = 32;
 
@@ -53,16 +55,17 @@ Belief belief_of(double samples_per_pixel) {
             std::lerp(a.agreement_gain, b.agreement_gain, t)};
 }
 
-// Sums over a window: of squared differences, of noise, and of products with the neighbours beside and
-// below.
+// Sums over a window: of weights, of squared differences, of noise, and of products with the neighbours
+// beside and below.
 struct Moments {
-    double square = 0.0, noise = 0.0, beside = 0.0, below = 0.0;
+    double weight = 1.0, square = 0.0, noise = 0.0, beside = 0.0, below = 0.0;
 
-    void add(double weight, const Moments& other) {
-        square += weight * other.square;
-        noise += weight * other.noise;
-        beside += weight * other.beside;
-        below += weight * other.below;
+    void add(double w, const Moments& other) {
+        weight += w * other.weight;
+        square += w * other.square;
+        noise += w * other.noise;
+        beside += w * other.beside;
+        below += w * other.below;
     }
 };
 
@@ -89,7 +92,7 @@ class Weights {
         const std::vector<Moments> moments = moments_of_rows(first, last);
         std::vector<Moments> columns(size_.x);
         for (uint32_t y = y0; y < y1; ++y) {
-            std::ranges::fill(columns, Moments{});
+            std::ranges::fill(columns, Moments{.weight = 0.0});
             for (uint32_t row = std::max(y, first + RADIUS) - RADIUS; row < std::min(y + RADIUS + 1, last);
                  ++row) {
                 const double weight = WINDOW[row + RADIUS - y];
@@ -97,7 +100,7 @@ class Weights {
                     columns[x].add(weight, moments[size_t(row - first) * size_.x + x]);
             }
             for (uint32_t x = 0; x < size_.x; ++x) {
-                Moments sum;
+                Moments sum{.weight = 0.0};
                 for (uint32_t at = std::max(x, RADIUS) - RADIUS; at < std::min(x + RADIUS + 1, size_.x); ++at)
                     sum.add(WINDOW[at + RADIUS - x], columns[at]);
                 const size_t i = size_t(y) * size_.x + x;
@@ -120,7 +123,7 @@ class Weights {
                 const dvec3 beside = x + 1 < size_.x ? row[x + 1].value
                                      : x > 0         ? row[x - 1].value
                                                      : dvec3(0.0);
-                moments[size_t(y - first) * size_.x + x] = {dot(value, value), row[x].noise,
+                moments[size_t(y - first) * size_.x + x] = {1.0, dot(value, value), row[x].noise,
                                                             dot(value, beside), dot(value, other[x].value)};
             }
             above.swap(row);
@@ -148,13 +151,12 @@ class Weights {
         if (!level_.holds(rgb_at(noisy_, i)) || !is_finite_at(variance_, i) ||
             !is_finite_at(denoised_.rgb, i))
             return result;
-        const double others = denoised_.own_weight.empty() ? 1.0 : 1.0 - double(denoised_.own_weight[i]);
         for (int c = 0; c < 3; ++c) {
             const double value = denoised_.rgb[size_t(c)][i], variance = variance_[size_t(c)][i];
             const double level = value * value + variance + darkness_;
             if (level <= 0.0) continue;
             result.value[c] = (value - double(noisy_[size_t(c)][i])) / std::sqrt(level);
-            result.noise += others * variance / level;
+            result.noise += others(i) * variance / level;
         }
         return result;
     }
@@ -167,7 +169,24 @@ class Weights {
         const double unexplained = 1.0 - belief_.noise_share * sum.noise / sum.square;
         const double agreeing =
             belief_.agreement_gain * (std::max(sum.beside, sum.below) / sum.square - CHANCE);
-        return float(std::clamp(std::max(unexplained, agreeing), 0.0, 1.0));
+        const double biased = std::clamp(std::max(unexplained, agreeing), 0.0, 1.0) * sum.square;
+        const double own = noise_over_denoised(i) * sum.weight - OUTLIER * sum.noise;
+        return float(biased / std::max(sum.square, biased + belief_.noise_share * own));
+    }
+
+    // The variance relative to the denoised value alone, of all channels.
+    double noise_over_denoised(size_t i) const {
+        double noise = 0.0;
+        for (size_t c = 0; c < 3; ++c) {
+            const double value = denoised_.rgb[c][i], level = value * value + darkness_;
+            if (level > 0.0) noise += others(i) * double(variance_[c][i]) / level;
+        }
+        return noise;
+    }
+
+    // The share of others in the denoised value.
+    double others(size_t i) const {
+        return denoised_.own_weight.empty() ? 1.0 : 1.0 - double(denoised_.own_weight[i]);
     }
 
     uvec2 size_;

@@ -24,6 +24,9 @@ namespace candela {
 // unknown), when there is more to lose than to win: up to 16 samples, V counts for 120 % and the share once;
 // at 64, for 85 % and twice; from 4096 on, for 20 % and four times.
 //
+// A lone outlier has its own say: as far as its V, relative to the denoised value, is above four times the
+// noise around, it counts beside the bias b^2 that the window shows, and the weight is b^2 / (b^2 + V).
+//
 // Where V is infinite (below two samples) or no number, nothing is known and the weight is 0. So it is where
 // only the noisy value is not finite, or beyond 2^40 times the picture's level; where the denoised one is
 // not, it is 1. Where nothing around has noise, it is exactly 1.

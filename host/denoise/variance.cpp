@@ -30,7 +30,7 @@ struct FilterPass {
 // The guide of the first step is itself filtered, with so much tolerance that little but edges decides:
 // differences of single pixels would follow their noise. After that, each result is the guide of the next.
 constexpr std::array FILTER_PASSES{
-    FilterPass{DENOISE_LAYER_NOISY, DENOISE_LAYER_NOISY, DENOISE_LAYER_FIRST, 1, 16.0f, 1e9f},
+    FilterPass{DENOISE_LAYER_NOISY, DENOISE_LAYER_NOISY, DENOISE_LAYER_FIRST, 1, 16.0f, 1000.0f},
     FilterPass{DENOISE_LAYER_NOISY, DENOISE_LAYER_FIRST, DENOISE_LAYER_SECOND, 1, 4.0f, 1.0f},
     FilterPass{DENOISE_LAYER_SECOND, DENOISE_LAYER_SECOND, DENOISE_LAYER_FIRST, 2, 4.0f, 1.0f},
     FilterPass{DENOISE_LAYER_FIRST, DENOISE_LAYER_FIRST, DENOISE_LAYER_SECOND, 4, 4.0f, 1.0f},

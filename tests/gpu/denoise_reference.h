@@ -123,7 +123,7 @@ inline std::vector<ReferencePixel> filtered_by_reference(const ReferencePicture&
         return pixels;
     };
     const std::vector<ReferencePixel> noisy = rounded(smoothed_variance(picture));
-    const std::vector<ReferencePixel> guide = rounded(filtered(picture, noisy, noisy, 1, 16.0, 1e9));
+    const std::vector<ReferencePixel> guide = rounded(filtered(picture, noisy, noisy, 1, 16.0, 1000.0));
     std::vector<ReferencePixel> result = rounded(filtered(picture, noisy, guide, 1, 4.0, 1.0));
     for (const int step : {2, 4, 8})
         result = rounded(filtered(picture, result, result, step, 4.0, 1.0));

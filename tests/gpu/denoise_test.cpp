@@ -196,6 +196,23 @@ TEST_F(DenoiseTest, OfNoiseLittleRemains) {
 
 // A checkerboard of albedos under light with noise: squares of one pixel keep their colours, as if there were
 // none.
+// A pixel in which one of 16 samples met the sun by chance: the pixels beside it take nothing of it, so that
+// all stay within five deviations of the truth, as they would without it.
+TEST_F(DenoiseTest, AnOutlierDoesNotSpread) {
+    const uvec2 size(41, 41);
+    Owned picture = noisy_picture(size, 0.1f, [](uint32_t, uint32_t) { return vec3(1.0f); });
+    const size_t at = 20 * size.x + 20;
+    for (size_t c = 0; c < 3; ++c) {
+        picture.rgb[c][at] = 3000.0f;
+        picture.variance[c][at] = 9e6f;
+    }
+    const Denoised result = denoise(picture);
+    for (size_t i = 0; i < picture.pixels(); ++i) {
+        if (i == at) continue;
+        EXPECT_NEAR(result.rgb[0][i], 1.0f, 0.5f) << i % size.x << ' ' << i / size.x;
+    }
+}
+
 TEST_F(DenoiseTest, AnEdgeThatOnlyTheAlbedoShowsRemains) {
     const auto albedo = [](uint32_t x, uint32_t y) { return vec3((x + y) % 2 == 0 ? 0.8f : 0.2f); };
     const uvec2 size(64, 64);

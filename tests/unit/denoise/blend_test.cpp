@@ -86,6 +86,22 @@ TEST(Blend, WhereNeighboursAgreeTheDifferenceIsABias) {
         EXPECT_EQ(weight, 1.0f);
 }
 
+// A pixel in which one sample met the sun by chance: its own noise counts, though around it all is bias. The
+// window shows a squared difference of at most 1 a channel, relative to the level; noise is 10^6 times that
+// of the denoised value, less four times that of the window (at most 1). So the weight is at most 1 / 850
+// 000.
+TEST(Blend, AnOutlierIsReplacedWhereItsNeighboursStay) {
+    Planes noisy = filled(1.1f), variance = filled(0.001f);
+    const size_t at = 10 * SIZE.x + 10;
+    for (size_t c = 0; c < 3; ++c) {
+        noisy[c][at] = 1000.0f;
+        variance[c][at] = 1e6f;
+    }
+    const std::vector<float> weights = weights_of(noisy, variance, filled(1.0f));
+    EXPECT_LE(weights[at], 1.0f / 849'000.0f);
+    EXPECT_EQ(weights[at + 3], 1.0f);
+}
+
 TEST(Blend, WithoutNoiseItIsTheNoisyPictureBitByBit) {
     const Planes noisy = filled(0.1f);
     Denoised denoised{filled(0.7f), std::vector<float>(PIXEL_COUNT, 0.3f), {}};
