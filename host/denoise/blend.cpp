@@ -18,13 +18,15 @@ constexpr uint32_t RADIUS = uint32_t(WINDOW.size()) / 2;
 // How much is believed of a difference, by samples per pixel.
 struct Belief {
     double samples;
+    double neighbours_share;  // How far a variance below those around is raised to their mean.
     // How much of the variance is taken for noise. Samples of a low-discrepancy sequence differ more than
     // their mean errs, and taking all of it for noise would hide a bias; few samples tell the variance badly,
     // and a denoised picture errs far less than they do.
     double noise_share;
     double agreement_gain;  // By how much the agreement of neighbours counts, see below.
 };
-constexpr std::array BELIEFS{Belief{16.0, 1.2, 1.0}, Belief{64.0, 0.85, 2.0}, Belief{4096.0, 0.2, 4.0}};
+constexpr std::array BELIEFS{Belief{16.0, 1.0, 1.2, 0.5}, Belief{64.0, 0.5, 0.85, 2.0},
+                             Belief{4096.0, 0.0, 0.2, 4.0}};
 constexpr double UNKNOWN_SAMPLES = 64.0;  // Taken if nothing says how many there are.
 // The level below which errors count as if absolute, of the picture's.
 constexpr double DARKNESS = 1e-3;
@@ -33,6 +35,8 @@ constexpr double DARKNESS = 1e-3;
 constexpr double CHANCE = 0.2;
 // The noise of a pixel counts by itself as far as it is more than so many times that of the window.
 constexpr double OUTLIER = 4.0;
+// See variance_at().
+constexpr double VARIANCE_LIMIT = 4.0;
 // Rows that one step weighs, of those for which it computes moments.
 constexpr uint32_t STRIP_ROWS = 32;
 
@@ -51,8 +55,8 @@ Belief belief_of(double samples_per_pixel) {
     if (after == BELIEFS.end()) return BELIEFS.back();
     const Belief &a = after[-1], &b = *after;
     const double t = std::log(samples / a.samples) / std::log(b.samples / a.samples);
-    return {samples, std::lerp(a.noise_share, b.noise_share, t),
-            std::lerp(a.agreement_gain, b.agreement_gain, t)};
+    return {samples, std::lerp(a.neighbours_share, b.neighbours_share, t),
+            std::lerp(a.noise_share, b.noise_share, t), std::lerp(a.agreement_gain, b.agreement_gain, t)};
 }
 
 // Sums over a window: of weights, of squared differences, of noise, and of products with the neighbours
@@ -142,17 +146,39 @@ class Weights {
     std::vector<Difference> differences(uint32_t y) const {
         std::vector<Difference> row(size_.x);
         for (uint32_t x = 0; x < size_.x; ++x)
-            row[x] = difference(size_t(y) * size_.x + x);
+            row[x] = difference(x, y);
         return row;
     }
 
-    Difference difference(size_t i) const {
+    // The variance of a channel. What few samples tell of it depends on what they found, and is 0 where they
+    // found nothing: then those around count. Each counts up to a multiple of the pixel's own, or of its
+    // level.
+    double variance_at(size_t c, uint32_t x, uint32_t y) const {
+        const size_t i = size_t(y) * size_.x + x;
+        const double own = variance_[c][i], value = denoised_.rgb[c][i];
+        if (belief_.neighbours_share == 0.0) return own;
+        const double limit = VARIANCE_LIMIT * std::max(own, value * value);
+        double sum = 0.0, weights = 0.0;
+        for (uint32_t v = std::max(y, RADIUS) - RADIUS; v < std::min(y + RADIUS + 1, size_.y); ++v) {
+            for (uint32_t u = std::max(x, RADIUS) - RADIUS; u < std::min(x + RADIUS + 1, size_.x); ++u) {
+                const double variance = variance_[c][size_t(v) * size_.x + u];
+                if (!std::isfinite(variance)) continue;
+                const double weight = WINDOW[u + RADIUS - x] * WINDOW[v + RADIUS - y];
+                sum += weight * std::min(variance, limit);
+                weights += weight;
+            }
+        }
+        return own + belief_.neighbours_share * std::max(0.0, sum / weights - own);
+    }
+
+    Difference difference(uint32_t x, uint32_t y) const {
+        const size_t i = size_t(y) * size_.x + x;
         Difference result;
         if (!level_.holds(rgb_at(noisy_, i)) || !is_finite_at(variance_, i) ||
             !is_finite_at(denoised_.rgb, i))
             return result;
         for (int c = 0; c < 3; ++c) {
-            const double value = denoised_.rgb[size_t(c)][i], variance = variance_[size_t(c)][i];
+            const double value = denoised_.rgb[size_t(c)][i], variance = variance_at(size_t(c), x, y);
             const double level = value * value + variance + darkness_;
             if (level <= 0.0) continue;
             result.value[c] = (value - double(noisy_[size_t(c)][i])) / std::sqrt(level);

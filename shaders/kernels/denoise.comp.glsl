@@ -26,7 +26,7 @@ const float NEIGHBOURS_SHARE = 0.8;
 // A neighbour's variance counts up to this multiple of the pixel's own, or of that of a relative deviation: what is
 // beyond lies across an edge that the features do not show, such as a lamp's.
 const float VARIANCE_LIMIT = 4.0;
-const float RELATIVE_DEVIATION = 0.1;
+const float RELATIVE_DEVIATION = 0.5;
 // Added to variances, in the unit of the squared irradiance: less noise than anyone sees.
 const float VARIANCE_FLOOR = 1e-8;
 
@@ -57,19 +57,21 @@ float feature_distance(vec4 normal, vec3 albedo, ivec2 neighbour) {
     return bend + squared(difference) / (ALBEDO_SIGMA * ALBEDO_SIGMA);
 }
 
-// The mean of the 3 x 3 values around a pixel, at least its own.
+// The mean of the 3 x 3 values around a pixel without the greatest, which may be an outlier; at least its own.
 vec3 local_level(ivec2 at, vec3 own) {
-    vec3 sum = vec3(0.0);
+    vec3 sum = vec3(0.0), greatest = vec3(0.0);
     float count = 0.0;
     for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) {
             ivec2 other = at + ivec2(x, y);
             if (!is_inside(other) || load(DENOISE_LAYER_SAMPLED, other).r == DENOISE_MISSING) continue;
-            sum += load(DENOISE_LAYER_NOISY, other).rgb;
+            vec3 value = load(DENOISE_LAYER_NOISY, other).rgb;
+            sum += min(value, greatest);
+            greatest = max(greatest, value);
             count += 1.0;
         }
     }
-    return max(own, sum / max(count, 1.0));
+    return max(own, sum / max(count - 1.0, 1.0));
 }
 
 void smooth_variance(ivec2 at) {

@@ -53,17 +53,19 @@ inline std::vector<ReferencePixel> smoothed_variance(const ReferencePicture& pic
     for (size_t i = 0; i < result.size(); ++i) {
         const ReferencePixel& own = picture.pixels[i];
         if (!own.is_there) continue;
-        dvec3 local(0.0), sum(0.0);
+        dvec3 local(0.0), greatest(0.0), sum(0.0);
         double count = 0.0, weights = 0.0;
         const int x = int(i) % picture.width, y = int(i) / picture.width;
         for (int v = y - 1; v <= y + 1; ++v) {
             for (int u = x - 1; u <= x + 1; ++u) {
                 if (!picture.is_inside(u, v) || !picture.pixels[picture.at(u, v)].is_there) continue;
-                local += picture.pixels[picture.at(u, v)].value;
+                const dvec3& value = picture.pixels[picture.at(u, v)].value;
+                local += value;
+                greatest = max(greatest, value);
                 count += 1.0;
             }
         }
-        const dvec3 level = 0.1 * max(own.value, local / count);
+        const dvec3 level = 0.5 * max(own.value, (local - greatest) / std::max(count - 1.0, 1.0));
         const dvec3 limit = 4.0 * max(own.variance, level * level);
         for_neighbours(picture, i, 1, [&](size_t j, double) {
             if (!picture.pixels[j].is_there) return;

@@ -521,6 +521,8 @@ GROUPS = [
          "UNKNOWN_SAMPLES"),
         ("neighbours that agree not heard", BLEND, "std::max(unexplained, agreeing)", "unexplained"),
         ("the noisy pixel's share of itself taken for noise", BLEND, "others(i) * variance / level", "variance / level"),
+        ("what found nothing believed", BLEND, "Belief{16.0, 1.0, 1.2, 0.5}", "Belief{16.0, 0.0, 1.2, 0.5}"),
+        ("an outlier takes part in the level around it", DENOISE, "sum += min(value, greatest);", "sum += value;"),
         ("an outlier's own noise not heard", BLEND, "biased + belief_.noise_share * own", "biased"),
         ("outliers seen by all around them", "host/denoise/variance.cpp", "16.0f, 1000.0f}", "16.0f, 1e9f}"),
         ("guides without the tint of mirrors", "shaders/integrator/guides.glsl",

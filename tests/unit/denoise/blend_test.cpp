@@ -80,6 +80,30 @@ TEST(Blend, WithManySamplesLessIsTakenForNoise) {
         EXPECT_NEAR(weight, 1.0 - 0.2 * 0.8, 1e-5);
 }
 
+// Half of the pixels, on a checkerboard, found light, and tell a variance of 1; the others found nothing, and
+// tell 0. With few samples, these have the mean of the window, in which 41 of 81 weights are those of their
+// own kind; with many samples they are believed.
+TEST(Blend, WithFewSamplesWhatFoundNothingHasTheVarianceOfThoseAround) {
+    const Planes noisy = checkered(1.0f, 1.0f);
+    Planes variance = filled(0.0f);
+    for (std::vector<float>& plane : variance) {
+        for (size_t i = 0; i < PIXEL_COUNT; ++i)
+            plane[i] = noisy[0][i] > 1.0f ? 1.0f : 0.0f;
+    }
+    const size_t dark = 10 * SIZE.x + 11;
+    ASSERT_EQ(noisy[0][dark], 0.0f);
+    const auto expected = [](double variance_of_dark, double noise_share) {
+        const double square = 41.0 / (1.0 + variance_of_dark) + 40.0 / 2.0;
+        return 1.0 - noise_share * (41.0 * variance_of_dark / (1.0 + variance_of_dark) + 40.0 / 2.0) / square;
+    };
+    for (const auto& [samples, weight] :
+         {std::pair{16.0, expected(40.0 / 81.0, 1.2)}, {4096.0, expected(0.0, 0.2)}}) {
+        const std::vector<float> weights =
+            noisy_weights(SIZE, view(noisy), view(variance), {filled(1.0f), {}, {}}, samples);
+        EXPECT_NEAR(weights[dark], weight, 1e-5) << samples;
+    }
+}
+
 // Differences of one sign are a bias, however great the variance is said to be.
 TEST(Blend, WhereNeighboursAgreeTheDifferenceIsABias) {
     for (const float weight : weights_of(filled(1.1f), filled(1.0f), filled(1.0f)))
