@@ -23,10 +23,11 @@ struct Belief {
     // their mean errs, and taking all of it for noise would hide a bias; few samples tell the variance badly,
     // and a denoised picture errs far less than they do.
     double noise_share;
+    double single_share;    // The same of a single pixel's difference.
     double agreement_gain;  // By how much the agreement of neighbours counts, see below.
 };
-constexpr std::array BELIEFS{Belief{16.0, 1.0, 1.2, 0.5}, Belief{64.0, 0.5, 0.85, 2.0},
-                             Belief{4096.0, 0.0, 0.2, 4.0}};
+constexpr std::array BELIEFS{Belief{16.0, 1.0, 1.2, 2.0, 0.5}, Belief{64.0, 0.5, 0.85, 1.0, 2.0},
+                             Belief{4096.0, 0.0, 0.2, 0.2, 4.0}};
 constexpr double UNKNOWN_SAMPLES = 64.0;  // Taken if nothing says how many there are.
 // The level below which errors count as if absolute, of the picture's.
 constexpr double DARKNESS = 1e-3;
@@ -36,7 +37,7 @@ constexpr double CHANCE = 0.2;
 // The noise of a pixel counts by itself as far as it is more than so many times that of the window.
 constexpr double OUTLIER = 4.0;
 // See variance_at().
-constexpr double VARIANCE_LIMIT = 4.0;
+constexpr double VARIANCE_LIMIT = 4.0, FEW_FINDS = 4.0;
 // Rows that one step weighs, of those for which it computes moments.
 constexpr uint32_t STRIP_ROWS = 32;
 
@@ -55,8 +56,9 @@ Belief belief_of(double samples_per_pixel) {
     if (after == BELIEFS.end()) return BELIEFS.back();
     const Belief &a = after[-1], &b = *after;
     const double t = std::log(samples / a.samples) / std::log(b.samples / a.samples);
-    return {samples, std::lerp(a.neighbours_share, b.neighbours_share, t),
-            std::lerp(a.noise_share, b.noise_share, t), std::lerp(a.agreement_gain, b.agreement_gain, t)};
+    const auto between = [&](double Belief::*field) { return std::lerp(a.*field, b.*field, t); };
+    return {samples, between(&Belief::neighbours_share), between(&Belief::noise_share),
+            between(&Belief::single_share), between(&Belief::agreement_gain)};
 }
 
 // Sums over a window: of weights, of squared differences, of noise, and of products with the neighbours
@@ -150,14 +152,15 @@ class Weights {
         return row;
     }
 
-    // The variance of a channel. What few samples tell of it depends on what they found, and is 0 where they
-    // found nothing: then those around count. Each counts up to a multiple of the pixel's own, or of its
-    // level.
+    // The variance of a channel. Few samples tell it by what they found, and tell 0 if they found nothing: it
+    // is raised to the mean of those around. Each of these counts up to a multiple of the pixel's own, or to
+    // the square of the pixel's level: the noisy one or, the fewer samples found light, the denoised one.
     double variance_at(size_t c, uint32_t x, uint32_t y) const {
         const size_t i = size_t(y) * size_.x + x;
-        const double own = variance_[c][i], value = denoised_.rgb[c][i];
+        const double own = variance_[c][i];
         if (belief_.neighbours_share == 0.0) return own;
-        const double limit = VARIANCE_LIMIT * std::max(own, value * value);
+        const double level = std::lerp(double(noisy_[c][i]), double(denoised_.rgb[c][i]), doubt(c, i));
+        const double limit = std::max(VARIANCE_LIMIT * own, level * level);
         double sum = 0.0, weights = 0.0;
         for (uint32_t v = std::max(y, RADIUS) - RADIUS; v < std::min(y + RADIUS + 1, size_.y); ++v) {
             for (uint32_t u = std::max(x, RADIUS) - RADIUS; u < std::min(x + RADIUS + 1, size_.x); ++u) {
@@ -169,6 +172,13 @@ class Weights {
             }
         }
         return own + belief_.neighbours_share * std::max(0.0, sum / weights - own);
+    }
+
+    // Near 1 if few samples found light, and near 0 if many did: where k of them found the same amount, and
+    // the others nothing, the square of the mean is about k times its variance.
+    double doubt(size_t c, size_t i) const {
+        const double square = std::pow(double(noisy_[c][i]), 2.0), few = FEW_FINDS * double(variance_[c][i]);
+        return square > 0.0 ? few / (few + square) : 1.0;
     }
 
     Difference difference(uint32_t x, uint32_t y) const {
@@ -197,7 +207,18 @@ class Weights {
             belief_.agreement_gain * (std::max(sum.beside, sum.below) / sum.square - CHANCE);
         const double biased = std::clamp(std::max(unexplained, agreeing), 0.0, 1.0) * sum.square;
         const double own = noise_over_denoised(i) * sum.weight - OUTLIER * sum.noise;
-        return float(biased / std::max(sum.square, biased + belief_.noise_share * own));
+        const double as_outlier = biased / std::max(sum.square, biased + belief_.noise_share * own);
+        return float(std::max(as_outlier, std::min(biased / sum.square, unexplained_alone(i))));
+    }
+
+    // The share of a pixel's squared difference that its own noise does not explain.
+    double unexplained_alone(size_t i) const {
+        double square = 0.0, noise = 0.0;
+        for (size_t c = 0; c < 3; ++c) {
+            square += std::pow(double(denoised_.rgb[c][i]) - double(noisy_[c][i]), 2.0);
+            noise += belief_.single_share * double(variance_[c][i]);
+        }
+        return square > noise ? 1.0 - noise / square : 0.0;
     }
 
     // The variance relative to the denoised value alone, of all channels.

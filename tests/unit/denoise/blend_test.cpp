@@ -80,28 +80,37 @@ TEST(Blend, WithManySamplesLessIsTakenForNoise) {
         EXPECT_NEAR(weight, 1.0 - 0.2 * 0.8, 1e-5);
 }
 
-// Half of the pixels, on a checkerboard, found light, and tell a variance of 1; the others found nothing, and
-// tell 0. With few samples, these have the mean of the window, in which 41 of 81 weights are those of their
-// own kind; with many samples they are believed.
-TEST(Blend, WithFewSamplesWhatFoundNothingHasTheVarianceOfThoseAround) {
-    const Planes noisy = checkered(1.0f, 1.0f);
-    Planes variance = filled(0.0f);
-    for (std::vector<float>& plane : variance) {
+// Half of the pixels, on a checkerboard, found light, 1 + d, and tell a variance of 1. The others have 1 - d,
+// and a variance of v after it was raised. In the window of one of these, 41 of 81 weights are those of its
+// own kind.
+double expected_in_the_dark(double d, double v, double noise_share) {
+    const double square = 41.0 * d * d / (1.0 + v) + 40.0 * d * d / 2.0;
+    return 1.0 - noise_share * (41.0 * v / (1.0 + v) + 40.0 / 2.0) / square;
+}
+
+float weight_in_the_dark(float d, float variance, double samples) {
+    const Planes noisy = checkered(1.0f, d);
+    Planes variances = filled(variance);
+    for (std::vector<float>& plane : variances) {
         for (size_t i = 0; i < PIXEL_COUNT; ++i)
-            plane[i] = noisy[0][i] > 1.0f ? 1.0f : 0.0f;
+            if (noisy[0][i] > 1.0f) plane[i] = 1.0f;
     }
-    const size_t dark = 10 * SIZE.x + 11;
-    ASSERT_EQ(noisy[0][dark], 0.0f);
-    const auto expected = [](double variance_of_dark, double noise_share) {
-        const double square = 41.0 / (1.0 + variance_of_dark) + 40.0 / 2.0;
-        return 1.0 - noise_share * (41.0 * variance_of_dark / (1.0 + variance_of_dark) + 40.0 / 2.0) / square;
-    };
-    for (const auto& [samples, weight] :
-         {std::pair{16.0, expected(40.0 / 81.0, 1.2)}, {4096.0, expected(0.0, 0.2)}}) {
-        const std::vector<float> weights =
-            noisy_weights(SIZE, view(noisy), view(variance), {filled(1.0f), {}, {}}, samples);
-        EXPECT_NEAR(weights[dark], weight, 1e-5) << samples;
-    }
+    return noisy_weights(SIZE, view(noisy), view(variances), {filled(1.0f), {}, {}},
+                         samples)[10 * SIZE.x + 11];
+}
+
+// Few samples that found nothing tell a variance of 0, and have the mean of the window; many are believed.
+TEST(Blend, WithFewSamplesWhatFoundNothingHasTheVarianceOfThoseAround) {
+    EXPECT_NEAR(weight_in_the_dark(1.0f, 0.0f, 16.0), expected_in_the_dark(1.0, 40.0 / 81.0, 1.2), 1e-5);
+    EXPECT_NEAR(weight_in_the_dark(1.0f, 0.0f, 4096.0), expected_in_the_dark(1.0, 0.0, 0.2), 1e-5);
+}
+
+// Many finds of little light are no reason for doubt: those around count up to about the square of that
+// light, 0.01.
+TEST(Blend, WithFewSamplesWhatFoundLittleLightOftenIsSure) {
+    const double weight = weight_in_the_dark(0.9f, 1e-6f, 16.0);
+    EXPECT_NEAR(weight, expected_in_the_dark(0.9, 0.01 * 40.0 / 81.0, 1.2), 1e-3);
+    EXPECT_GT(weight, 0.5);
 }
 
 // Differences of one sign are a bias, however great the variance is said to be.
@@ -124,6 +133,18 @@ TEST(Blend, AnOutlierIsReplacedWhereItsNeighboursStay) {
     const std::vector<float> weights = weights_of(noisy, variance, filled(1.0f));
     EXPECT_LE(weights[at], 1.0f / 849'000.0f);
     EXPECT_EQ(weights[at + 3], 1.0f);
+}
+
+// A lamp of one pixel, which the denoiser spread: its noise is great beside the denoised value, but explains
+// no more than 1 % of the difference.
+TEST(Blend, WhatItsOwnNoiseDoesNotExplainIsNoOutlier) {
+    Planes noisy = checkered(1.0f, 0.01f), variance = filled(1e-4f);
+    const size_t at = 10 * SIZE.x + 10;
+    for (size_t c = 0; c < 3; ++c) {
+        noisy[c][at] = 101.0f;
+        variance[c][at] = 100.0f;
+    }
+    EXPECT_GE(weights_of(noisy, variance, filled(1.0f))[at], 0.98f);
 }
 
 TEST(Blend, WithoutNoiseItIsTheNoisyPictureBitByBit) {
