@@ -23,7 +23,8 @@ namespace candela {
 // share of E d^2 says by which neighbours agree. Both become stricter with `samples_per_pixel` (0 if
 // unknown), when there is more to lose than to win: up to 16 samples, V counts for 120 % and the share half;
 // at 64, for 85 % and twice; from 4096 on, for 20 % and four times. Few samples tell V badly, and 0 where
-// they found nothing: up to 16, a V below the mean of those around is taken for that; at 64, half way.
+// they found nothing: up to 16, a V below the mean of those around is raised to that, within what the pixel's
+// own samples found; at 64, half way.
 //
 // A lone outlier has its own say: as far as its V, relative to the denoised value, is above four times the
 // noise around, it counts beside the bias b^2 that the window shows, and the weight is b^2 / (b^2 + V), or 1
