@@ -23,7 +23,7 @@ struct Belief {
     // their mean errs, and taking all of it for noise would hide a bias; few samples tell the variance badly,
     // and a denoised picture errs far less than they do.
     double noise_share;
-    double single_share;    // The same of a single pixel's difference.
+    double single_share;    // The same, beside the difference of a single pixel.
     double agreement_gain;  // By how much the agreement of neighbours counts, see below.
 };
 constexpr std::array BELIEFS{Belief{16.0, 1.0, 1.2, 2.0, 0.5}, Belief{64.0, 0.5, 0.85, 1.0, 2.0},
@@ -36,8 +36,10 @@ constexpr double DARKNESS = 1e-3;
 constexpr double CHANCE = 0.2;
 // The noise of a pixel counts by itself as far as it is more than so many times that of the window.
 constexpr double OUTLIER = 4.0;
-// See variance_at().
-constexpr double VARIANCE_LIMIT = 4.0, FEW_FINDS = 4.0;
+// A variance around a pixel counts up to this multiple of the pixel's own.
+constexpr double VARIANCE_LIMIT = 4.0;
+// So many samples of a pixel that found light are half believed, see doubt().
+constexpr double FEW_FINDS = 4.0;
 // Rows that one step weighs, of those for which it computes moments.
 constexpr uint32_t STRIP_ROWS = 32;
 

@@ -27,8 +27,8 @@ namespace candela {
 // own samples found; at 64, half way.
 //
 // A lone outlier has its own say: as far as its V, relative to the denoised value, is above four times the
-// noise around, it counts beside the bias b^2 that the window shows, and the weight is b^2 / (b^2 + V), or 1
-// - V / d^2 by its own d alone, if that is more: a lamp of one pixel is none.
+// noise around, it counts beside the bias b^2 that the window shows, and the weight is b^2 / (b^2 + V). But
+// what its own V does not explain of its own d^2 is no noise, and stays: a lamp of one pixel is no outlier.
 //
 // Where V is infinite (below two samples) or no number, nothing is known and the weight is 0. So it is where
 // only the noisy value is not finite, or beyond 2^40 times the picture's level; where the denoised one is
