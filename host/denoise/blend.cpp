@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "denoise/level.h"
@@ -18,7 +19,7 @@ constexpr uint32_t RADIUS = uint32_t(WINDOW.size()) / 2;
 // How much is believed of a difference, by samples per pixel.
 struct Belief {
     double samples;
-    double neighbours_share;  // How far a variance below those around is raised to their mean.
+    double neighbours_share;  // How far a variance below those of its like is raised to their mean.
     // How much of the variance is taken for noise. Samples of a low-discrepancy sequence differ more than
     // their mean errs, and taking all of it for noise would hide a bias; few samples tell the variance badly,
     // and a denoised picture errs far less than they do.
@@ -26,20 +27,22 @@ struct Belief {
     double single_share;    // The same, beside the difference of a single pixel.
     double agreement_gain;  // By how much the agreement of neighbours counts, see below.
 };
-constexpr std::array BELIEFS{Belief{16.0, 1.0, 1.2, 2.0, 0.5}, Belief{64.0, 0.5, 0.85, 1.0, 2.0},
+constexpr std::array BELIEFS{Belief{16.0, 1.0, 1.2, 2.0, 1.0}, Belief{256.0, 1.0, 1.0, 1.0, 4.0},
                              Belief{4096.0, 0.0, 0.2, 0.2, 4.0}};
 constexpr double UNKNOWN_SAMPLES = 64.0;  // Taken if nothing says how many there are.
 // The level below which errors count as if absolute, of the picture's.
 constexpr double DARKNESS = 1e-3;
 // Differences of neighbours agree by a bias alone, whatever the noise: the share of the squared difference by
-// which they do is that of the bias, less what a window of 5 x 5 shows by chance, and more, since edges turn.
-constexpr double CHANCE = 0.2;
+// which they do is that of the bias, and more, since edges turn. Of their products, so many standard
+// deviations are taken for chance.
+constexpr double CHANCE = 1.75;
 // The noise of a pixel counts by itself as far as it is more than so many times that of the window.
 constexpr double OUTLIER = 4.0;
-// A variance around a pixel counts up to this multiple of the pixel's own.
-constexpr double VARIANCE_LIMIT = 4.0;
-// So many samples of a pixel that found light are half believed, see doubt().
-constexpr double FEW_FINDS = 4.0;
+// Pixels are alike if their denoised values differ by less than this share.
+constexpr double ALIKE = 0.2;
+// The variance of a like counts up to this multiple of the squared denoised value: an outlier says little of
+// the pixels around it.
+constexpr double VARIANCE_LIMIT = 2.0;
 // Rows that one step weighs, of those for which it computes moments.
 constexpr uint32_t STRIP_ROWS = 32;
 
@@ -63,19 +66,37 @@ Belief belief_of(double samples_per_pixel) {
             between(&Belief::single_share), between(&Belief::agreement_gain)};
 }
 
-// Sums over a window: of weights, of squared differences, of noise, and of products with the neighbours
+// Weighted sums of products of differences, and what these sums would be by chance.
+struct Agreement {
+    double sum = 0.0, variance = 0.0;
+
+    void add(double w, const Agreement& other) {
+        sum += w * other.sum;
+        variance += w * w * other.variance;
+    }
+
+    double beyond_chance() const { return sum - CHANCE * std::sqrt(variance); }
+};
+
+// Sums over a window: of weights, of squared differences, of noise, and the agreement with the neighbours
 // beside and below.
 struct Moments {
-    double weight = 1.0, square = 0.0, noise = 0.0, beside = 0.0, below = 0.0;
+    double weight = 1.0, square = 0.0, noise = 0.0;
+    Agreement beside{}, below{};
 
     void add(double w, const Moments& other) {
         weight += w * other.weight;
         square += w * other.square;
         noise += w * other.noise;
-        beside += w * other.beside;
-        below += w * other.below;
+        beside.add(w, other.beside);
+        below.add(w, other.below);
     }
 };
+
+Agreement agreement(const dvec3& a, const dvec3& b) {
+    const double product = dot(a, b);
+    return {product, product * product};
+}
 
 template <class Planes>
 bool is_finite_at(const Planes& planes, size_t i) {
@@ -132,7 +153,8 @@ class Weights {
                                      : x > 0         ? row[x - 1].value
                                                      : dvec3(0.0);
                 moments[size_t(y - first) * size_.x + x] = {1.0, dot(value, value), row[x].noise,
-                                                            dot(value, beside), dot(value, other[x].value)};
+                                                            agreement(value, beside),
+                                                            agreement(value, other[x].value)};
             }
             above.swap(row);
             row.swap(below);
@@ -155,32 +177,26 @@ class Weights {
     }
 
     // The variance of a channel. Few samples tell it by what they found, and tell 0 if they found nothing: it
-    // is raised to the mean of those around. Each of these counts up to a multiple of the pixel's own, or to
-    // the square of the pixel's level: the noisy one or, the fewer samples found light, the denoised one.
+    // is raised to the mean of those around that the denoiser takes for alike, by Tukey's biweight.
     double variance_at(size_t c, uint32_t x, uint32_t y) const {
         const size_t i = size_t(y) * size_.x + x;
         const double own = variance_[c][i];
         if (belief_.neighbours_share == 0.0) return own;
-        const double level = std::lerp(double(noisy_[c][i]), double(denoised_.rgb[c][i]), doubt(c, i));
-        const double limit = std::max(VARIANCE_LIMIT * own, level * level);
+        const double value = denoised_.rgb[c][i], square = value * value;
+        const double per_range = 1.0 / std::max(ALIKE * ALIKE * square, std::numeric_limits<double>::min());
         double sum = 0.0, weights = 0.0;
         for (uint32_t v = std::max(y, RADIUS) - RADIUS; v < std::min(y + RADIUS + 1, size_.y); ++v) {
             for (uint32_t u = std::max(x, RADIUS) - RADIUS; u < std::min(x + RADIUS + 1, size_.x); ++u) {
-                const double variance = variance_[c][size_t(v) * size_.x + u];
-                if (!std::isfinite(variance)) continue;
-                const double weight = WINDOW[u + RADIUS - x] * WINDOW[v + RADIUS - y];
-                sum += weight * std::min(variance, limit);
+                const size_t j = size_t(v) * size_.x + u;
+                const double difference = double(denoised_.rgb[c][j]) - value, variance = variance_[c][j];
+                const double alike = 1.0 - difference * difference * per_range;
+                if (!(alike > 0.0) || !std::isfinite(variance)) continue;
+                const double weight = WINDOW[u + RADIUS - x] * WINDOW[v + RADIUS - y] * alike * alike;
+                sum += weight * std::min(variance, VARIANCE_LIMIT * square);
                 weights += weight;
             }
         }
         return own + belief_.neighbours_share * std::max(0.0, sum / weights - own);
-    }
-
-    // Near 1 if few samples found light, and near 0 if many did: where k of them found the same amount, and
-    // the others nothing, the square of the mean is about k times its variance.
-    double doubt(size_t c, size_t i) const {
-        const double square = std::pow(double(noisy_[c][i]), 2.0), few = FEW_FINDS * double(variance_[c][i]);
-        return square > 0.0 ? few / (few + square) : 1.0;
     }
 
     Difference difference(uint32_t x, uint32_t y) const {
@@ -205,8 +221,8 @@ class Weights {
         if (sum.noise <= 0.0) return 1.0f;
         if (sum.square <= 0.0) return 0.0f;
         const double unexplained = 1.0 - belief_.noise_share * sum.noise / sum.square;
-        const double agreeing =
-            belief_.agreement_gain * (std::max(sum.beside, sum.below) / sum.square - CHANCE);
+        const double agreeing = belief_.agreement_gain *
+                                std::max(sum.beside.beyond_chance(), sum.below.beyond_chance()) / sum.square;
         const double biased = std::clamp(std::max(unexplained, agreeing), 0.0, 1.0) * sum.square;
         const double own = noise_over_denoised(i) * sum.weight - OUTLIER * sum.noise;
         const double as_outlier = biased / std::max(sum.square, biased + belief_.noise_share * own);
