@@ -28,7 +28,7 @@ struct Belief {
     double agreement_gain;  // By how much the agreement of neighbours counts, see below.
 };
 constexpr std::array BELIEFS{Belief{16.0, 1.0, 1.2, 2.0, 1.0}, Belief{256.0, 1.0, 1.0, 1.0, 4.0},
-                             Belief{4096.0, 0.0, 0.2, 0.2, 4.0}};
+                             Belief{4096.0, 0.0, 0.1, 0.1, 4.0}};
 constexpr double UNKNOWN_SAMPLES = 64.0;  // Taken if nothing says how many there are.
 // The level below which errors count as if absolute, of the picture's.
 constexpr double DARKNESS = 1e-3;

@@ -22,7 +22,7 @@ namespace candela {
 // differs from pixel to pixel, while a bias has the same sign along an edge: the weight is at least what the
 // share of E d^2 says by which neighbours agree, beyond 1.75 standard deviations of what agrees by chance.
 // Both become stricter with `samples_per_pixel` (0 if unknown), when there is more to lose than to win: up to
-// 16 samples, V counts for 1.2 and the share for 1; at 256, for 1 and 4; from 4096 on, for 0.2 and 4. Few
+// 16 samples, V counts for 1.2 and the share for 1; at 256, for 1 and 4; from 4096 on, for 0.1 and 4. Few
 // samples tell V badly, and 0 where they found nothing: up to 256, it is raised to the mean of those pixels
 // around whose denoised values are alike.
 //
