@@ -10,6 +10,8 @@
 namespace candela {
 namespace {
 
+constexpr const char* VARIANCE_LAYER = "Variance";
+
 struct Guide {
     const char* layer;
     RgbPlanes planes;
@@ -74,17 +76,24 @@ NoisyPicture noisy_picture(const Image& image, bool with_alpha, const std::strin
         if (variance != nullptr) picture.albedo_variance = variance->values;
     }
     if (const auto normal = normal_of(image)) picture.normal = normal->planes;
-    picture.variance = image.find_rgb("Variance");
+    picture.variance = image.find_rgb(VARIANCE_LAYER);
     if (const Channel* const samples = image.find("SampleCount.V")) picture.samples = samples->values;
     return picture;
 }
 
 std::string describe_guides(const Image& image) {
     const auto albedo = albedo_of(image), normal = normal_of(image);
-    if (!albedo) return "with colour alone: it has no layer Albedo (--aov albedo,n or, better, denoising)";
-    const std::string layer = albedo->layer;
-    if (!normal) return "with " + layer + ", but without normals: it has no layer N (--aov n)";
-    return "with " + layer + " and " + normal->layer;
+    std::string result = "with ";
+    if (!albedo) {
+        result += "colour alone: it has no layer Albedo (--aov albedo,n or, better, denoising)";
+    } else if (!normal) {
+        result += std::string(albedo->layer) + ", but without normals: it has no layer N (--aov n)";
+    } else {
+        result += std::string(albedo->layer) + " and " + normal->layer;
+    }
+    if (!image.find_rgb(VARIANCE_LAYER))
+        result += "; not blended with the noisy picture: it has no layer Variance (--aov variance)";
+    return result;
 }
 
 void add_denoised(Image& image, Denoiser& denoiser, bool with_alpha, const std::string& name) {

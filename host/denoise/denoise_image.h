@@ -21,12 +21,11 @@ bool is_denoised_channel(const std::string& name);
 // everywhere. Throws Error that begins with `name` if the image lacks R, G or B.
 NoisyPicture noisy_picture(const Image& image, bool with_alpha, const std::string& name);
 
-// For people: "with DenoisingAlbedo and DenoisingNormal", "with colour alone: there is no layer Albedo".
+// For people: "with DenoisingAlbedo and DenoisingNormal", or what the image lacks for the best result.
 std::string describe_guides(const Image& image);
 
 // Denoises the image, blends the result with it if it has its variance (blend.h), and adds or replaces the
-// layers. Throws Error as noisy_picture() and Denoiser::run()
-// do; the image is then unchanged.
+// layers. Throws Error as noisy_picture() and Denoiser::run() do; the image is then unchanged.
 void add_denoised(Image& image, Denoiser& denoiser, bool with_alpha, const std::string& name);
 
 // The image with its denoised layers in place of R, G, B and A as long as this lives, if it has them.

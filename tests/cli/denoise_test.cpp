@@ -313,7 +313,8 @@ TEST_F(DenoiseTest, ForeignImagesAreDenoisedByWhatTheyHave) {
     EXPECT_EQ(
         result.out,
         "denoised by Open Image Denoise 2.5.1 with colour alone: it has no layer Albedo (--aov albedo,n or, "
-        "better, denoising)\n");
+        "better, denoising); not blended with the noisy picture: it has no layer Variance (--aov "
+        "variance)\n");
     const Image denoised = read_exr(file("a.exr"));
     EXPECT_EQ(denoised.data, image.data);
     for (const float value : values(denoised, "Denoised.R"))

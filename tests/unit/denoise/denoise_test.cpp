@@ -70,6 +70,8 @@ Image image_of(uint32_t width, uint32_t height, const std::vector<std::pair<std:
 const std::vector<std::pair<std::string, float>> COLOUR = {{"R", 1}, {"G", 2}, {"B", 3}};
 const std::vector<std::pair<std::string, float>> FIRST_HIT_LAYERS = {
     {"Albedo.R", 0}, {"Albedo.G", 0}, {"Albedo.B", 0}, {"N.X", -1}, {"N.Y", -1}, {"N.Z", -1}};
+const std::vector<std::pair<std::string, float>> VARIANCE_LAYERS = {
+    {"Variance.R", 0}, {"Variance.G", 0}, {"Variance.B", 0}};
 const std::vector<std::pair<std::string, float>> GUIDES = {
     {"DenoisingAlbedo.R", 0.0f}, {"DenoisingAlbedo.G", 0.0f}, {"DenoisingAlbedo.B", 0.0f},
     {"DenoisingNormal.X", 0.0f}, {"DenoisingNormal.Y", 0.0f}, {"DenoisingNormal.Z", 0.0f}};
@@ -105,12 +107,12 @@ TEST(DenoiseImage, AddsLayersBesideTheNoisyOnes) {
 }
 
 TEST(DenoiseImage, PrefersGuidesMadeForDenoisers) {
-    const Image both = image_of(4, 4, COLOUR + FIRST_HIT_LAYERS + GUIDES);
+    const Image both = image_of(4, 4, COLOUR + FIRST_HIT_LAYERS + GUIDES + VARIANCE_LAYERS);
     const NoisyPicture input = noisy_picture(both, true, "a.exr");
     EXPECT_EQ(input.albedo->at(0).data(), both.find("DenoisingAlbedo.R")->values.data());
     EXPECT_EQ(input.normal->at(2).data(), both.find("DenoisingNormal.Z")->values.data());
     EXPECT_EQ(describe_guides(both), "with DenoisingAlbedo and DenoisingNormal");
-    const Image first = image_of(4, 4, COLOUR + FIRST_HIT_LAYERS);
+    const Image first = image_of(4, 4, COLOUR + FIRST_HIT_LAYERS + VARIANCE_LAYERS);
     EXPECT_EQ(noisy_picture(first, true, "a.exr").albedo->at(1).data(),
               first.find("Albedo.G")->values.data());
     EXPECT_EQ(describe_guides(first), "with Albedo and N");
@@ -120,9 +122,10 @@ TEST(DenoiseImage, SaysWhatItLacks) {
     const Image colour = image_of(4, 4, COLOUR);
     EXPECT_FALSE(noisy_picture(colour, true, "a.exr").albedo);
     EXPECT_EQ(describe_guides(colour),
-              "with colour alone: it has no layer Albedo (--aov albedo,n or, better, denoising)");
-    const Image albedo =
-        image_of(4, 4, COLOUR + std::vector(FIRST_HIT_LAYERS.begin(), FIRST_HIT_LAYERS.begin() + 3));
+              "with colour alone: it has no layer Albedo (--aov albedo,n or, better, denoising); not blended "
+              "with the noisy picture: it has no layer Variance (--aov variance)");
+    const Image albedo = image_of(
+        4, 4, COLOUR + VARIANCE_LAYERS + std::vector(FIRST_HIT_LAYERS.begin(), FIRST_HIT_LAYERS.begin() + 3));
     EXPECT_EQ(describe_guides(albedo), "with Albedo, but without normals: it has no layer N (--aov n)");
     EXPECT_EQ(
         error_of([] {
