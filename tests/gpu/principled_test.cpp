@@ -235,10 +235,9 @@ TEST_F(PrincipledTest, ACosineAboveOneIsTakenForOne) {
     const vec3 slanted = normalize(vec3(1.0f, 0.0f, 0.6f));
     const float above = std::nextafter(std::nextafter(1.0f, 2.0f), 2.0f);
     for (const auto& [name, material] : plain_materials()) {
-        const auto value = [&](float cosine) {
+        const auto value = [&, &m = material](float cosine) {
             const vec3 w(0.0f, 0.0f, cosine);
-            return run({bsdf_item(principled(material), w, slanted, 0),
-                        bsdf_item(principled(material), slanted, w, 0)});
+            return run({bsdf_item(principled(m), w, slanted, 0), bsdf_item(principled(m), slanted, w, 0)});
         };
         const std::vector<BsdfResult> at_one = value(1.0f), above_one = value(above);
         for (size_t i = 0; i < 2; ++i) {
