@@ -117,7 +117,7 @@ std::vector<TextureItem> texture_items(const Scene& scene, size_t count) {
     for (size_t i = 0; i < count; ++i) {
         const auto texture = uint32_t(i % scene.materials.size());
         const uvec2 size = scene.images[texture / 18].image->size;
-        vec2 uv = 8.0f * vec2(random.unit(), random.unit()) - 4.0f;
+        vec2 uv = 8.0f * random.square() - 4.0f;
         for (int axis = 0; axis < 2; ++axis) {
             const auto n = float(size[axis]);
             const float u = random.unit();
