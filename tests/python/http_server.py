@@ -102,6 +102,13 @@ class Server:
         shared = [file for file in glob.glob("/dev/shm/candela-shared-*") if f"-{self.program()}-" in file]
         return glob.glob(f"{self.folder.name}/candela-http-*/*") + shared
 
+    def wait_until_nothing_is_left(self):
+        """Waits until the files of requests are gone: the program frees an image after its picture is answered."""
+        end = time.monotonic() + HANG
+        while left := self.files():
+            assert time.monotonic() < end, f"requests have left {left}"
+            time.sleep(0.02)
+
 
 def receive(connection):
     """All that comes until the end."""
@@ -172,7 +179,7 @@ class HttpCase(unittest.TestCase):
     def assert_fine(self, server):
         self.assertEqual(server.picture("spp=1")[:4], b"\x89PNG")
         server.wait_until("candela_requests_pending", 0)
-        self.assertEqual(server.files(), [])
+        server.wait_until_nothing_is_left()
         self.assertIsNone(server.process.poll())
 
     def assert_refused(self, status, message, answer):
