@@ -95,7 +95,7 @@ TEST_F(PictureIdentity, EveryPartOfTheCameraIsPartOfIt) {
              {[](Camera& c) { c.principal_offset.x = 0.5f; },
               ", fisheye of 2 rad, principal point 0.5 0 off the centre, not at "}}) {
         const std::string message =
-            after([&change = change](RenderSettings&, Scene& scene) { change(scene.cameras.front()); });
+            after([&apply = change](RenderSettings&, Scene& scene) { apply(scene.cameras.front()); });
         EXPECT_NE(message.find(text), std::string::npos) << message;
     }
 }
