@@ -106,8 +106,8 @@ TEST(Blend, WithFewSamplesWhatFoundNothingHasTheVarianceOfThoseAround) {
     EXPECT_NEAR(weight_in_the_dark(1.0f, 0.0f, 4096.0), expected_in_the_dark(1.0, 0.0, 0.1), 1e-5);
 }
 
-// The picture's left half is 1, and exact; its right half is 10, with a variance of 25 and differences that
-// noise explains. What lies across an edge tells nothing of a pixel's variance.
+// The picture is 1 on the left, where noise explains 1.2 % of the differences, and 10 on the right, where it
+// explains all. What lies across an edge tells nothing of a pixel's variance.
 TEST(Blend, TheVarianceIsRaisedToThatOfLikesAlone) {
     Planes noisy = checkered(1.0f, 0.1f), variance = filled(1e-4f), denoised = filled(1.0f);
     for (size_t i = 0; i < PIXEL_COUNT; ++i) {
@@ -126,9 +126,8 @@ TEST(Blend, TheVarianceIsRaisedToThatOfLikesAlone) {
     EXPECT_EQ(weights[at + 2], 0.0f);
 }
 
-// One pixel of the window has a variance of 10^6, and the denoised values are alike: that counts as 2. So
-// each of the nine pixels around it gets 2 w / 81, with w its weight in their window, and 81 windows of these
-// show their noise.
+// One pixel has a variance of 10^6, and the denoised values are alike: for the pixels around it, that counts
+// as 2. So each of these gets 2 w / 81, with w the outlier's weight in its window.
 TEST(Blend, AnOutliersVarianceSaysLittleOfThePixelsAround) {
     const Planes noisy = checkered(1.0f, 1.0f);
     Planes variance = filled(0.0f);
@@ -137,8 +136,8 @@ TEST(Blend, AnOutliersVarianceSaysLittleOfThePixelsAround) {
         variance[c][at] = 1e6f;
     const std::vector<float> weights =
         noisy_weights(SIZE, view(noisy), view(variance), {filled(1.0f), {}, {}}, 16.0);
-    // Four columns from the outlier, the window's outermost column alone has noise: in row v of it, with a
-    // weight of w(v), 2 w(v) / 81 of the variance, relative to a level of 1.
+    // Four columns from the outlier, the window's outermost column alone has noise. A pixel in its row v has
+    // the weight w(v) in this window, and so has the outlier in that pixel's.
     double noise = 0.0, square = 0.0;
     for (int v = -2; v <= 2; ++v) {
         const double weight = 3.0 - std::abs(v), raised = 2.0 * weight / 81.0;
