@@ -32,8 +32,10 @@ def planes(path, layer=""):
 
 def render(build, scene, size, spp, seed, out):
     if not out.exists():
+        part = out.with_name("part-" + out.name)  # An interrupted rendering writes what it has so far.
         subprocess.run([build / "candela", "render", scene, "-q", "--spp", str(spp), "--seed", str(seed), "--size", size,
-                        "--aov", "albedo,n,variance,samples,denoising", "-o", out], check=True)
+                        "--aov", "albedo,n,variance,samples,denoising", "-o", part], check=True)
+        part.rename(out)
     return out
 
 

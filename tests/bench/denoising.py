@@ -60,8 +60,10 @@ class Bench:
     def render(self, scene, name, spp, seed, aovs):
         path = self.folder / f"{name}.exr"
         if not path.exists():
-            self.candela("render", str(SCENES / f"{scene}.json"), "-o", str(path), "--spp", str(spp), "--seed", str(seed),
+            part = path.with_name("part-" + path.name)  # An interrupted rendering writes what it has so far.
+            self.candela("render", str(SCENES / f"{scene}.json"), "-o", str(part), "--spp", str(spp), "--seed", str(seed),
                          "--size", size_of(scene, self.options.width), "--aov", aovs, "--quiet")
+            part.rename(path)
         return path
 
     def denoised(self, noisy, way, guides):
