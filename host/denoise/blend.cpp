@@ -19,7 +19,7 @@ constexpr uint32_t RADIUS = uint32_t(WINDOW.size()) / 2;
 // How much is believed of a difference, by samples per pixel.
 struct Belief {
     double samples;
-    double neighbours_share;  // How far a variance below those of its like is raised to their mean.
+    double neighbours_share;  // How far a variance below the mean of similar pixels is raised to it.
     // How much of the variance is taken for noise. Samples of a low-discrepancy sequence differ more than
     // their mean errs, and taking all of it for noise would hide a bias; few samples tell the variance badly,
     // and a denoised picture errs far less than they do.
@@ -38,10 +38,10 @@ constexpr double DARKNESS = 1e-3;
 constexpr double CHANCE = 1.75;
 // The noise of a pixel counts by itself as far as it is more than so many times that of the window.
 constexpr double OUTLIER = 4.0;
-// Pixels are alike if their denoised values differ by less than this share.
-constexpr double ALIKE = 0.2;
-// The variance of a like counts up to this multiple of the squared denoised value: an outlier says little of
-// the pixels around it.
+// Pixels are similar if their denoised values differ by less than this share.
+constexpr double SIMILAR = 0.2;
+// The variance of a similar pixel counts up to this multiple of the squared denoised value: an outlier says
+// little about the pixels around it.
 constexpr double VARIANCE_LIMIT = 2.0;
 // Rows that one step weighs, of those for which it computes moments.
 constexpr uint32_t STRIP_ROWS = 32;
@@ -66,7 +66,7 @@ Belief belief_of(double samples_per_pixel) {
             between(&Belief::single_share), between(&Belief::agreement_gain)};
 }
 
-// Weighted sums of products of differences, and what these sums would be by chance.
+// A weighted sum of products of differences, and the variance that it would have by chance.
 struct Agreement {
     double sum = 0.0, variance = 0.0;
 
@@ -177,21 +177,22 @@ class Weights {
     }
 
     // The variance of a channel. Few samples tell it by what they found, and tell 0 if they found nothing: it
-    // is raised to the mean of those around that the denoiser takes for alike, by Tukey's biweight.
+    // is raised to the mean of those around that the denoiser takes for similar, by Tukey's biweight.
     double variance_at(size_t c, uint32_t x, uint32_t y) const {
         const size_t i = size_t(y) * size_.x + x;
         const double own = variance_[c][i];
         if (belief_.neighbours_share == 0.0) return own;
         const double value = denoised_.rgb[c][i], square = value * value;
-        const double per_range = 1.0 / std::max(ALIKE * ALIKE * square, std::numeric_limits<double>::min());
+        const double per_range =
+            1.0 / std::max(SIMILAR * SIMILAR * square, std::numeric_limits<double>::min());
         double sum = 0.0, weights = 0.0;
         for (uint32_t v = std::max(y, RADIUS) - RADIUS; v < std::min(y + RADIUS + 1, size_.y); ++v) {
             for (uint32_t u = std::max(x, RADIUS) - RADIUS; u < std::min(x + RADIUS + 1, size_.x); ++u) {
                 const size_t j = size_t(v) * size_.x + u;
                 const double difference = double(denoised_.rgb[c][j]) - value, variance = variance_[c][j];
-                const double alike = 1.0 - difference * difference * per_range;
-                if (!(alike > 0.0) || !std::isfinite(variance)) continue;
-                const double weight = WINDOW[u + RADIUS - x] * WINDOW[v + RADIUS - y] * alike * alike;
+                const double similar = 1.0 - difference * difference * per_range;
+                if (!(similar > 0.0) || !std::isfinite(variance)) continue;
+                const double weight = WINDOW[u + RADIUS - x] * WINDOW[v + RADIUS - y] * similar * similar;
                 sum += weight * std::min(variance, VARIANCE_LIMIT * square);
                 weights += weight;
             }

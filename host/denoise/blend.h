@@ -24,7 +24,7 @@ namespace candela {
 // Both become stricter with `samples_per_pixel` (0 if unknown), when there is more to lose than to win: up to
 // 16 samples, V counts for 1.2 and the share for 1; at 256, for 1 and 4; from 4096 on, for 0.1 and 4. Few
 // samples tell V badly, and 0 where they found nothing: up to 256, a V below the mean of the pixels around
-// whose denoised values are alike is raised to that.
+// whose denoised values are similar is raised to that.
 //
 // A lone outlier has its own say: as far as its V, relative to the denoised value, is above four times the
 // noise around, it counts beside the bias b^2 that the window shows, and the weight is b^2 / (b^2 + V). But

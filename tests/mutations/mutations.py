@@ -522,7 +522,7 @@ GROUPS = [
         ("neighbours that agree not heard", BLEND, "std::max(unexplained, agreeing)", "unexplained"),
         ("the noisy pixel's share of itself taken for noise", BLEND, "others(i) * variance / level", "variance / level"),
         ("what found nothing believed", BLEND, "Belief{16.0, 1.0,", "Belief{16.0, 0.0,"),
-        ("pixels across an edge taken for alike", BLEND, "1.0 - difference * difference * per_range", "1.0"),
+        ("pixels across an edge taken for similar", BLEND, "1.0 - difference * difference * per_range", "1.0"),
         ("an outlier's variance shared by all around it", BLEND, "std::min(variance, VARIANCE_LIMIT * square)", "variance"),
         ("what agrees by chance taken for a bias", BLEND, "sum - CHANCE * std::sqrt(variance)", "sum"),
         ("an outlier takes part in the level around it", DENOISE, "sum += min(value, greatest);", "sum += value;"),

@@ -107,8 +107,8 @@ TEST(Blend, WithFewSamplesWhatFoundNothingHasTheVarianceOfThoseAround) {
 }
 
 // The picture is 1 on the left, where noise explains 1.2 % of the differences, and 10 on the right, where it
-// explains all. What lies across an edge tells nothing of a pixel's variance.
-TEST(Blend, TheVarianceIsRaisedToThatOfLikesAlone) {
+// explains all. What lies across an edge tells nothing about a pixel's variance.
+TEST(Blend, TheVarianceIsRaisedToThatOfSimilarPixelsAlone) {
     Planes noisy = checkered(1.0f, 0.1f), variance = filled(1e-4f), denoised = filled(1.0f);
     for (size_t i = 0; i < PIXEL_COUNT; ++i) {
         if (i % SIZE.x < SIZE.x / 2) continue;
@@ -126,9 +126,9 @@ TEST(Blend, TheVarianceIsRaisedToThatOfLikesAlone) {
     EXPECT_EQ(weights[at + 2], 0.0f);
 }
 
-// One pixel has a variance of 10^6, and the denoised values are alike: for the pixels around it, that counts
-// as 2. So each of these gets 2 w / 81, with w the outlier's weight in its window.
-TEST(Blend, AnOutliersVarianceSaysLittleOfThePixelsAround) {
+// One pixel has a variance of 10^6, and the denoised values are similar: for the pixels around it, that
+// counts as 2. So each of these gets 2 w / 81, with w the outlier's weight in its window.
+TEST(Blend, AnOutliersVarianceSaysLittleAboutThePixelsAround) {
     const Planes noisy = checkered(1.0f, 1.0f);
     Planes variance = filled(0.0f);
     const size_t at = 10 * SIZE.x + 10;
