@@ -1,5 +1,6 @@
 // Random numbers for tests: the standard library's generator, independent of the renderer's own. The same on
-// every machine, since the standard defines std::mt19937 bit for bit.
+// every machine, since the standard defines std::mt19937 bit for bit; but it leaves the order of operands and
+// arguments open, so draw one number in each statement, or several within braces.
 #pragma once
 
 #include <cmath>

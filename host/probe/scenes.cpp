@@ -171,7 +171,8 @@ TriangleMesh nasty_mesh(uint32_t count) {
     for (uint32_t plane = 0; plane < 20; ++plane) {
         const vec3 o = random.cube(), x = random.direction(), y = random.direction();
         const auto point = [&] {
-            return o + (2.0f * random.unit() - 1.0f) * x + (2.0f * random.unit() - 1.0f) * y;
+            const vec2 place = 2.0f * random.square() - 1.0f;
+            return o + place.x * x + place.y * y;
         };
         for (uint32_t i = 0; i < count / 4 / 20; ++i) {
             const vec3 a = point(), b = point();

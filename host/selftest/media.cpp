@@ -109,7 +109,7 @@ std::vector<DistanceResult> run_distances(const vk::Device& device, const Medium
                       .lit = c.lit};
     std::vector<DistanceItem> items(DISTANCE_SAMPLES, item);
     for (DistanceItem& i : items)
-        i.random = uvec4(random.bits(), random.bits(), random.bits(), random.bits());
+        i.random = uvec4{random.bits(), random.bits(), random.bits(), random.bits()};
     items[0].random = uvec4(0);
     items[1].random = uvec4(UINT32_MAX);
     KernelConstants constants;

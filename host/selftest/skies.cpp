@@ -21,8 +21,10 @@ namespace {
 Environment random_sky(uvec2 size, float rotation) {
     Random random(size.x * 1000 + size.y);
     Environment sky{.size = size, .radiance = {}, .rotation = rotation};
-    for (uint32_t i = 0; i < size.x * size.y; ++i)
-        sky.radiance.push_back(std::exp2(6.0f * random.unit()) * (vec3(1.1f) + random.cube()));
+    for (uint32_t i = 0; i < size.x * size.y; ++i) {
+        const float scale = std::exp2(6.0f * random.unit());
+        sky.radiance.push_back(scale * (vec3(1.1f) + random.cube()));
+    }
     if (sky.radiance.size() > 2) sky.radiance[1] = vec3(0.0f);
     return sky;
 }

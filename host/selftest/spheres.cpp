@@ -193,7 +193,8 @@ Evidence test_rays_at_disks(const vk::Device& device, Effort effort) {
             const Disk disk{.center = dvec3(center), .e1 = dvec3(e1), .e2 = dvec3(e2)};
             std::vector<InteractionItem> rays;
             for (size_t i = 0; i < sized(effort, COUNT); ++i) {
-                const vec3 target = center + 0.7f * random.unit() * e1 + 0.7f * random.unit() * e2;
+                const vec2 place = 0.7f * random.square();
+                const vec3 target = center + place.x * e1 + place.y * e2;
                 const vec3 o = center + 2.0f * radius * random.direction();
                 rays.push_back({.o = o,
                                 .d = normalize(target - o),

@@ -20,7 +20,8 @@ Transform similarity(Random& random, bool mirrored, dvec3 place, double size) {
     Transform transform;
     const dvec3 scale = size * dvec3(mirrored ? -1.0 : 1.0, 1.0, 1.0);
     transform.append(glm::scale(glm::dmat4(1.0), scale));
-    transform.append(glm::rotate(glm::dmat4(1.0), 6.0 * double(random.unit()), dvec3(random.direction())));
+    const double angle = 6.0 * double(random.unit());
+    transform.append(glm::rotate(glm::dmat4(1.0), angle, dvec3(random.direction())));
     transform.append(glm::translate(glm::dmat4(1.0), place));
     return transform;
 }

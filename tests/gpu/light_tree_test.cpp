@@ -56,7 +56,8 @@ std::vector<std::pair<LightRecord, double>> mixed_lights(size_t count, uint32_t 
         l.kind = KINDS[i % KINDS.size()];
         l.p = random.cube();
         l.e1 = l.kind == LIGHT_SPOT ? random.direction() : size * random.direction();
-        l.e2 = size * random.unit() * cross(normalize(l.e1), random.direction());
+        const float width = size * random.unit();
+        l.e2 = width * cross(normalize(l.e1), random.direction());
         l.two_sided = random.unit() < 0.3f && l.kind < LIGHT_SPHERE;
         l.radiance = vec3(log_uniform(random, 1e-6f, 1e6f));
         if (l.kind == LIGHT_SPHERE) l.e1 = vec3(size, 0, 0);

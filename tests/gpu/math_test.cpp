@@ -178,8 +178,10 @@ TEST_F(MathTest, FramesAreOrthonormal) {
         add(vec3(1, 0, sign * 0.0f), vec3(1, 2, 3));
     }
     Random random(4);
-    for (int i = 0; i < 10000; ++i)
-        add(random.direction(), random.cube());
+    for (int i = 0; i < 10000; ++i) {
+        const vec3 z = random.direction();
+        add(z, random.cube());
+    }
 
     const std::vector<FrameResult> results = map<FrameResult>(kernels::frame, items);
     for (size_t i = 0; i < items.size(); ++i) {

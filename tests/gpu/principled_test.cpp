@@ -139,7 +139,11 @@ class PrincipledTest : public BsdfTest {
 // Random materials of all layers: the seed decides which of them there are.
 PrincipledMaterial random_material(Random& random) {
     const auto fraction = [&]() { return random.bits() % 3 == 0 ? 0.0f : random.unit(); };
-    const auto color = [&]() { return vec3(random.unit(), random.unit(), random.unit()); };
+    const auto color = [&]() { return vec3{random.unit(), random.unit(), random.unit()}; };
+    const auto tint = [&]() {
+        const float strength = fraction();
+        return strength * color();
+    };
     const bool prism = random.bits() % 4 == 0;
     PrincipledMaterial m{
         .base_color = color(),
@@ -148,7 +152,7 @@ PrincipledMaterial random_material(Random& random) {
         .diffuse_roughness = fraction(),
         .ior = 1.1f + random.unit(),
         .specular = 1.0f - fraction(),
-        .specular_color = vec3(1.0f) - fraction() * color(),
+        .specular_color = vec3(1.0f) - tint(),
         .anisotropy = fraction(),
         // On the device, what lies under a dielectric that parts colours takes green's share, and a film on
         // it has three base indices at once; in the reference, each colour has a material of its own.
@@ -160,7 +164,7 @@ PrincipledMaterial random_material(Random& random) {
         .coat_roughness = 0.15f + 0.85f * random.unit(),
         .coat_ior = 1.2f + random.unit(),
         .coat_darkening = fraction(),
-        .sheen_color = fraction() * color(),
+        .sheen_color = tint(),
         .sheen_roughness = 0.3f + 0.7f * random.unit(),
         .fuzz = fraction(),
         .fuzz_color = color(),

@@ -119,8 +119,8 @@ TEST_F(RoundShapesTest, DistancesAgreeWithDoublePrecision) {
                 const vec3 o = distance * random.cube();
                 add(rays, o, normalize(random.cube() - o));
                 add(rays, o, vec3(sphere.center) + float(sphere.radius) * random.cube() - o);
-                add(rays, o,
-                    vec3(disk.center) + vec3(disk.e1) * random.unit() + vec3(disk.e2) * random.unit() - o);
+                const vec2 place = random.square();
+                add(rays, o, vec3(disk.center) + vec3(disk.e1) * place.x + vec3(disk.e2) * place.y - o);
             }
             const auto check = [&](const Scene& scene, const auto& shape) {
                 size_t checked = 0;

@@ -45,7 +45,7 @@ Scene one_of_many() {
     TriangleMesh mesh;
     for (int i = 0; i < 100'000; ++i) {
         const vec3 p =
-            vec3(-50, -50, 20) + vec3(100, 100, 80) * vec3(random.unit(), random.unit(), random.unit());
+            vec3(-50, -50, 20) + vec3(100, 100, 80) * vec3{random.unit(), random.unit(), random.unit()};
         add_triangle(mesh, p, p + vec3(0, 0.01f, 0), p + vec3(0.01f, 0, 0));
     }
     add_shape(scene, std::move(mesh), 0, Emission{.radiance = vec3(20)});

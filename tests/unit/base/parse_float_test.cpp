@@ -90,7 +90,8 @@ TEST(ParseFloat, ByCRoundsTheSameNumbers) {
     Random random(1);
     for (int i = 0; i < 10000; ++i) {
         char text[64];
-        const double number = (random.unit() - 0.5) * std::pow(10.0, 60.0 * double(random.unit()) - 30.0);
+        const double size = std::pow(10.0, 60.0 * double(random.unit()) - 30.0);
+        const double number = (random.unit() - 0.5) * size;
         std::snprintf(text, sizeof text, "%.*g", 1 + i % 20, number);
         expect_same<float>(text);
         expect_same<double>(text);

@@ -68,7 +68,8 @@ std::vector<LightBounds> random_lights(size_t count, uint32_t seed) {
     for (LightBounds& light : lights) {
         const vec3 p = random.cube();
         light.box.extend(p);
-        light.box.extend(p + 0.1f * std::pow(random.unit(), 8.0f) * random.cube());
+        const float size = 0.1f * std::pow(random.unit(), 8.0f);
+        light.box.extend(p + size * random.cube());
         light.axis = random.direction();
         const float kind = random.unit();
         light.normals = kind < 0.7f ? 0.0f : kind < 0.8f ? PI : PI * random.unit();

@@ -62,8 +62,10 @@ TEST(Mesh, FarFromZeroPositionsAreRoundedToAPartOfTheSize) {
     Random random(2);
     const dvec3 centre(2e6, -1e6, 3e5);
     std::vector<dvec3> positions;
-    for (int i = 0; i < 1000; ++i)
-        positions.push_back(centre + 0.5 * dvec3(random.cube()) + 1e-9 * dvec3(random.cube()));
+    for (int i = 0; i < 1000; ++i) {
+        const dvec3 p = centre + 0.5 * dvec3(random.cube());
+        positions.push_back(p + 1e-9 * dvec3(random.cube()));
+    }
     const TriangleMesh mesh = with_positions(positions);
     for (size_t i = 0; i < positions.size(); ++i) {
         // A mesh of less than 1 m lies within 1.5 m of its origin, where floats round by at most 2^-24 m.

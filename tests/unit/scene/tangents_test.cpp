@@ -206,7 +206,7 @@ TEST(Tangents, AreValidWhateverTheMeshIs) {
         }
         if (i % 5 == 0) mesh.normals.clear();
         for (int k = 0; k < 100; ++k)
-            mesh.triangles.emplace_back(random.bits() % 60, random.bits() % 60, random.bits() % 60);
+            mesh.triangles.push_back({random.bits() % 60, random.bits() % 60, random.bits() % 60});
         const TriangleMesh result = with_tangents(mesh);
         expect_valid(result);
         EXPECT_EQ(result.normals.size(), i % 5 == 0 ? 0 : result.positions.size());

@@ -69,8 +69,8 @@ std::vector<vec3> read_colors(const std::string& text) {
 std::string random_obj(uint32_t seed) {
     Random random(seed);
     const auto number = [&] {
-        const double value =
-            std::pow(10.0, 12.0 * double(random.unit()) - 6.0) * (random.bits() & 1 ? 1 : -1);
+        const double size = std::pow(10.0, 12.0 * double(random.unit()) - 6.0);
+        const double value = random.bits() & 1 ? size : -size;
         const char* formats[] = {"%.3f", "%.9g", "%+.17g", "%.4e", "%.0f"};
         char text[64];
         std::snprintf(text, sizeof text, formats[random.bits() % 5], value);
@@ -78,8 +78,8 @@ std::string random_obj(uint32_t seed) {
     };
     const auto color = [&] {
         char text[64];
-        std::snprintf(text, sizeof text, " %.6f %.9g\t%.3e", double(random.unit()), double(random.unit()),
-                      double(random.unit()));
+        const dvec3 c = 0.5 * dvec3(random.cube()) + 0.5;
+        std::snprintf(text, sizeof text, " %.6f %.9g\t%.3e", c.x, c.y, c.z);
         return std::string(text);
     };
     std::string text;
