@@ -75,7 +75,7 @@ TEST_F(FormFactorTest, OfASphereWhoseConePointsAwayIsZero) {
 TEST_F(BeamTest, ASmallSphereIsASpot) {
     constexpr double RADIUS = 0.01;
     const Cone cone{0.2f, 0.5f};
-    const dvec3 place(1, 2, 0), axis(-0.6, -2, 0.3);
+    const dvec3 place(1, 2, -0.5), axis(-0.6, -2, 0.9);  // Mirrored in any way, it misses the floor.
     const Scene soft = floor_under(Sphere{place, RADIUS, axis}, {.cone = cone});
     Scene hard = floor_seen_closely(REFLECTANCE);
     hard.lights = {{"", SpotLight{place, axis, vec3(glm::dvec3(RADIANCE) * M_PI * RADIUS * RADIUS), cone}}};
