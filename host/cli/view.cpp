@@ -100,32 +100,39 @@ vk::DeviceInfo choose_device(const vk::Instance& instance, const Window& window,
     return vk::select_device(devices, wanted);
 }
 
-// A scene as its window shows it first.
+// A scene, and how its window shows it at first.
 struct Opened {
     Scene scene;
     ViewState state;
-    std::string name;  // For the title, and for files.
+    std::string name;          // For the title, and for files.
+    std::string command_line;  // For the attributes of EXRs.
+    bool start_page = false;   // It stands behind the start page.
 };
 
-Opened opened(const ViewArguments& arguments, Scene scene, const std::string& name, const Camera& camera) {
+Opened opened(const ViewArguments& arguments, Scene scene, const std::string& name, const Camera& camera,
+              const std::string& command_line) {
     const RenderSettings settings = arguments.rendering.settings(scene, camera);
     print_warnings(warnings_of_unseen_lights(scene, settings.estimator));
     return {.scene = std::move(scene),
             .state = {.camera = camera,
+                      .home = camera,
                       .settings = settings,
                       .exposure_ev = float(arguments.development.exposure.ev),
                       .tonemap = arguments.development.tonemap,
                       .denoise = arguments.denoising.is_on()},
-            .name = name};
+            .name = name,
+            .command_line = command_line};
 }
 
-Opened opened_file(const ViewArguments& arguments, const std::string& file, Scene scene) {
+Opened opened_file(const ViewArguments& arguments, const std::string& file, Scene scene,
+                   const std::string& command_line) {
     const Camera camera = arguments.scene.choose_camera(scene);
-    return opened(arguments, std::move(scene), std::filesystem::path(file).stem().string(), camera);
+    const std::string name = std::filesystem::path(file).stem().string();
+    return opened(arguments, std::move(scene), name, camera, command_line);
 }
 
 // What is shown first: the scene, or what stands behind the start page.
-Opened open_first(const ViewArguments& arguments) {
+Opened open_first(const ViewArguments& arguments, const std::string& command_line) {
     const std::string& file = arguments.scene.file;
     CommandFiles files;
     if (!file.empty()) files.read("SCENE", file);
@@ -135,25 +142,28 @@ Opened open_first(const ViewArguments& arguments) {
     if (file.empty()) {
         Scene scene = cornell_box();
         const Camera camera = scene.cameras.front();
-        return opened(arguments, std::move(scene), "candela", camera);
+        Opened start = opened(arguments, std::move(scene), "candela", camera, command_line);
+        start.start_page = true;
+        return start;
     }
     Scene scene = load_with_progress(file, arguments.rendering.loading);
     files.read_all("the scene's file", scene.files);
-    return opened_file(arguments, file, std::move(scene));
+    return opened_file(arguments, file, std::move(scene), command_line);
 }
 
 // A file that was dropped onto the window, which waits for it.
-Opened open_dropped(const ViewArguments& arguments, Window& window, const std::string& file) {
+Opened open_dropped(const ViewArguments& arguments, Window& window, const std::string& file,
+                    const std::string& command_line) {
     const std::string name = std::filesystem::path(file).filename().string();
     window.set_title("loading " + printable(name, MAX_NAME_BYTES));
     Scene scene = load_quietly(file, arguments.rendering.loading);
     print_warnings(scene.warnings);
-    return opened_file(arguments, file, std::move(scene));
+    return opened_file(arguments, file, std::move(scene), command_line + " " + shell_quoted(file));
 }
 
 ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     const RenderingOptions& rendering = arguments.rendering;
-    std::optional<Opened> next = open_first(arguments);
+    std::optional<Opened> next = open_first(arguments, command_line);
     Window window(next->state.settings.size, !arguments.frames, printable(next->name, MAX_NAME_BYTES));
     vk::Instance::Options instance_wishes = instance_options();
     instance_wishes.extensions = window.instance_extensions();
@@ -166,35 +176,54 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     ViewerOptions options{.device = device,
                           .pipeline_cache_folder = pipeline_cache_folder(),
                           .name = {},
-                          .command_line = command_line,
+                          .command_line = {},
                           .target = arguments.frames.value_or(rendering.sampling.spp.value_or(MAX_SPP)),
                           .close_at_target = arguments.frames.has_value(),
-                          .start_page = arguments.scene.file.empty(),
                           .stopped = [&interrupts] { return interrupts.noted(); },
                           .say = print_note,
                           .denoiser = denoiser};
     bool complete = false;
+    std::optional<Opened> before;  // What the window showed when a file was dropped onto it.
+    std::string failure;           // Why it shows that again.
     while (next) {
         options.name = next->name;
-        Viewer viewer(window, instance, std::move(next->scene), next->state, options);
+        options.command_line = next->command_line;
+        options.start_page = next->start_page;
+        std::optional<Viewer> viewer;
+        try {
+            viewer.emplace(window, instance, std::move(next->scene), next->state, options);
+        } catch (const Error& error) {
+            if (!before) throw;
+            next = std::exchange(before, std::nullopt);
+            failure = error.what();
+            continue;
+        }
         next.reset();
-        complete = viewer.run();
+        before.reset();
+        if (!failure.empty()) viewer->tell(std::exchange(failure, {}));
+        complete = viewer->run();
         while (const std::optional<std::string> file = window.take_dropped()) {
             if (arguments.frames || window.closing()) break;
             try {
-                next = open_dropped(arguments, window, *file);
-                options.command_line = command_line + " " + shell_quoted(*file);
-                options.start_page = false;
+                next = open_dropped(arguments, window, *file, command_line);
             } catch (const Error& error) {
-                viewer.tell(error.what());
-                complete = viewer.run();
+                viewer->tell(error.what());
+                complete = viewer->run();
             }
         }
         Attempts attempts;
         for (const std::string& path : arguments.screenshots) {
-            if (complete) attempts.attempt([&] { viewer.save(path); });
+            if (complete) attempts.attempt([&] { viewer->save(path); });
         }
         attempts.finish();
+        if (next) {
+            auto [scene, state] = std::move(*viewer).leave();
+            before = {.scene = std::move(scene),
+                      .state = std::move(state),
+                      .name = options.name,
+                      .command_line = options.command_line,
+                      .start_page = options.start_page};
+        }
     }
     check_validation(instance);
     if (interrupts.noted()) return ExitCode::interrupted;

@@ -55,8 +55,7 @@ void show_buttons(ViewState& state, ViewRequests& requests) {
     requests.save_exr |= ImGui::Button("save EXR");
 }
 
-void show_camera(ViewState& state, ViewRequests& requests, std::span<const Camera> cameras,
-                 const Camera& home) {
+void show_camera(ViewState& state, ViewRequests& requests, std::span<const Camera> cameras) {
     const auto name_of = [](const Camera& camera) { return printable(camera.name, MAX_NAME_BYTES); };
     if (ImGui::BeginCombo("camera", name_of(state.camera).c_str())) {
         for (size_t i = 0; i < cameras.size(); ++i) {
@@ -71,11 +70,11 @@ void show_camera(ViewState& state, ViewRequests& requests, std::span<const Camer
     ImGui::SameLine();
     requests.save_camera |= ImGui::Button("save camera");
     if (state.camera.ortho_height || state.camera.panorama) return;  // It has no lens.
-    const float distance = float(length(home.look_at - home.position));
+    const float distance = float(length(state.home.look_at - state.home.position));
     Lens& lens = state.camera.lens;
     constexpr ImGuiSliderFlags LOGARITHMIC = ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp;
-    ImGui::SliderFloat("aperture", &lens.radius, 0.0f, std::max(0.1f * distance, home.lens.radius), "%.4g m",
-                       LOGARITHMIC);
+    ImGui::SliderFloat("aperture", &lens.radius, 0.0f, std::max(0.1f * distance, state.home.lens.radius),
+                       "%.4g m", LOGARITHMIC);
     ImGui::SliderFloat("focus", &lens.focal_distance, 0.01f * distance, 100.0f * distance, "%.4g m",
                        LOGARITHMIC);
 }
@@ -115,7 +114,7 @@ void begin_panel(float width) {
 }  // namespace
 
 void show_panel(ViewState& state, ViewRequests& requests, const ViewFigures& figures,
-                std::span<const Camera> cameras, const Camera& home, bool has_environment) {
+                std::span<const Camera> cameras, bool has_environment) {
     begin_panel(WIDTH);
     ImGui::PushItemWidth(-LABEL_WIDTH);
     show_figures(figures);
@@ -125,7 +124,7 @@ void show_panel(ViewState& state, ViewRequests& requests, const ViewFigures& fig
                        ImGuiSliderFlags_AlwaysClamp);
     choose("tone map", state.tonemap, TONEMAPS);
     ImGui::Separator();
-    show_camera(state, requests, cameras, home);
+    show_camera(state, requests, cameras);
     show_rendering(state);
     if (has_environment) show_environment(state);
     ImGui::Checkbox("denoise at rest", &state.denoise);

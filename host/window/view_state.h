@@ -12,6 +12,7 @@ namespace candela {
 
 struct ViewState {
     Camera camera;
+    Camera home;              // The scene's, to which ViewRequests::home goes back.
     RenderSettings settings;  // Settings of the picture at rest.
     float exposure_ev = 0.0f;
     Tonemap tonemap = Tonemap::linear;
@@ -26,7 +27,7 @@ struct ViewState {
 // The user's one-time requests.
 struct ViewRequests {
     bool restart = false;
-    bool home = false;      // Back to the scene's camera.
+    bool home = false;      // Back to ViewState::home.
     bool save_png = false;  // The picture as it is shown, without the panel.
     bool save_exr = false;  // Radiance and more.
     bool save_camera = false;

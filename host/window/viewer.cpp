@@ -42,7 +42,6 @@ Viewer::Viewer(Window& window, const vk::Instance& instance, Scene scene, ViewSt
       stages_(scene_),
       state_(std::move(state)),
       options_(std::move(options)),
-      home_(state_.camera),
       gui_(window),
       denoiser_(options_.denoiser),
       next_scale_(FIRST_SCALE) {
@@ -199,6 +198,14 @@ bool Viewer::step(double progress) {
     }
     measured_from_ = Clock::now();
     return !restart_ && !ended();
+}
+
+std::pair<Scene, ViewState> Viewer::leave() && {
+    if (scene_.environment) {
+        scene_.environment->radiance = std::move(radiance_);
+        scene_.environment->rotation = state_.environment_rotation;
+    }
+    return {std::move(scene_), std::move(state_)};
 }
 
 // Whether the picture in progress is outdated.

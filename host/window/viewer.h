@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -62,6 +63,9 @@ class Viewer {
     // Says it, and shows it in the panel.
     void tell(const std::string& message);
 
+    // The scene and how it is seen, for another viewer; this one is then unusable.
+    std::pair<Scene, ViewState> leave() &&;
+
   private:
     bool ended() const;
     bool changed_lately() const;
@@ -95,7 +99,6 @@ class Viewer {
     const GpuScene& gpu_scene_ = stages_.joined();
     ViewState state_;
     ViewerOptions options_;
-    Camera home_;
 
     Gui gui_;
     Controls controls_;

@@ -101,7 +101,7 @@ void Viewer::turn(const Input* input) {
     if (state_.panel && options_.start_page) {
         show_start_page(figures_);
     } else if (state_.panel) {
-        show_panel(state_, requests, figures_, scene_.cameras, home_, scene_.environment.has_value());
+        show_panel(state_, requests, figures_, scene_.cameras, scene_.environment.has_value());
     }
     gui_.end_turn();
     apply(requests);
@@ -110,8 +110,8 @@ void Viewer::turn(const Input* input) {
 
 void Viewer::apply(const ViewRequests& requests) {
     if (requests.close) window_.close();
-    if (requests.camera) home_ = scene_.cameras.at(*requests.camera);
-    if (requests.camera || requests.home) state_.camera = home_;
+    if (requests.camera) state_.home = scene_.cameras.at(*requests.camera);
+    if (requests.camera || requests.home) state_.camera = state_.home;
     if (requests.focus) set_focus(*requests.focus);
     if (requests.restart) restart_ = true;
     save_as_asked(requests);

@@ -292,6 +292,14 @@ TEST_F(View, FilesDroppedOntoTheStartPageAreScenes) {
     wait_for_samples("depth-of-field", 4);
     const Image first = picture_at_rest("depth-of-field", {80, 60}, 4);
     expect_same_rgb(first, rendered({"--size", "80x60", "--spp", "4"}, DEPTH_OF_FIELD));
+    drop(write("far.json", R"({"cameras": {"main": {"position": [0, 0, 4], "look_at": [0, 0, 0],
+            "vertical_fov": 40}},
+        "materials": {"clay": {"type": "diffuse", "reflectance": [0.7, 0.5, 0.4]}},
+        "shapes": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "clay"}],
+        "lights": [{"type": "point", "position": [1e30, 0, 0], "intensity": [1, 1, 1]}]})"));
+    ASSERT_TRUE(viewer_->wait_for_err("too far from the scene", 1)) << viewer_->err();
+    wait_for_samples("depth-of-field", 4);
+    expect_same_rgb(picture_at_rest("depth-of-field", {80, 60}, 4), first);
     drop(write("triangle (1).glb",
                glb()));  // Onto a scene of the user's, by a name with letters that URIs escape.
     wait_for_samples("triangle (1)", 4);
