@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "denoise/level.h"
+#include "denoise/opening.h"
 
 namespace candela {
 namespace {
@@ -35,7 +36,10 @@ constexpr double DARKNESS = 1e-3;
 // Differences of neighbours agree by a bias alone, whatever the noise: the share of the squared difference by
 // which they do is that of the bias, and more, since edges turn. Of their products, so many standard
 // deviations are taken for chance.
-constexpr double CHANCE = 1.75;
+constexpr double CHANCE = 1.5;
+// A bias is as long as an edge: what neighbours agree on counts along lines of 2 * 3 + 1 pixels, and what
+// noise does not explain along 2 * 1 + 1.
+constexpr uint32_t AGREEING_RADIUS = 3, UNEXPLAINED_RADIUS = 1;
 // The noise of a pixel counts by itself as far as it is more than so many times that of the window.
 constexpr double OUTLIER = 4.0;
 // Pixels are similar if their denoised values differ by less than this share.
@@ -43,8 +47,8 @@ constexpr double SIMILAR = 0.2;
 // The variance of a similar pixel counts up to this multiple of the squared denoised value: an outlier says
 // little about the pixels around it.
 constexpr double VARIANCE_LIMIT = 2.0;
-// Rows that one step weighs, of those for which it computes moments.
-constexpr uint32_t STRIP_ROWS = 32;
+// Rows that one step weighs, and those before and after on which their weights depend.
+constexpr uint32_t STRIP_ROWS = 32, STRIP_MARGIN = 2 * AGREEING_RADIUS;
 
 // The relative difference of a pixel, and the part of its square that noise explains; zeros if it is not to
 // count.
@@ -117,9 +121,28 @@ class Weights {
 
     // Fills the rows from y0 to y1, exclusive.
     void fill(uint32_t y0, uint32_t y1, std::vector<float>& weights) const {
+        const uint32_t before = y0 - std::min(y0, STRIP_MARGIN), after = std::min(y1 + STRIP_MARGIN, size_.y);
+        const std::vector<Moments> windows = windows_of_rows(before, after);
+        const auto along_lines = [&](double (Weights::*share)(const Moments&) const, uint32_t radius) {
+            std::vector<float> shares(windows.size());
+            for (size_t i = 0; i < shares.size(); ++i)
+                shares[i] = float(std::clamp((this->*share)(windows[i]), 0.0, 1.0));
+            return opened(shares, {size_.x, after - before}, radius);
+        };
+        const std::vector<float> unexplained = along_lines(&Weights::unexplained_of, UNEXPLAINED_RADIUS);
+        const std::vector<float> agreeing = along_lines(&Weights::agreeing_of, AGREEING_RADIUS);
+        for (size_t i = size_t(y0) * size_.x, at = size_t(y0 - before) * size_.x; i < size_t(y1) * size_.x;
+             ++i, ++at)
+            weights[i] = weight(i, windows[at], double(std::max(unexplained[at], agreeing[at])));
+    }
+
+  private:
+    // The sums over the windows of the pixels of the rows from y0 to y1, exclusive.
+    std::vector<Moments> windows_of_rows(uint32_t y0, uint32_t y1) const {
         const uint32_t first = y0 - std::min(y0, RADIUS), last = std::min(y1 + RADIUS, size_.y);
         const std::vector<Moments> moments = moments_of_rows(first, last);
-        std::vector<Moments> columns(size_.x);
+        std::vector<Moments> columns(size_.x), windows;
+        windows.reserve(size_t(y1 - y0) * size_.x);
         for (uint32_t y = y0; y < y1; ++y) {
             std::ranges::fill(columns, Moments{.weight = 0.0});
             for (uint32_t row = std::max(y, first + RADIUS) - RADIUS; row < std::min(y + RADIUS + 1, last);
@@ -132,13 +155,12 @@ class Weights {
                 Moments sum{.weight = 0.0};
                 for (uint32_t at = std::max(x, RADIUS) - RADIUS; at < std::min(x + RADIUS + 1, size_.x); ++at)
                     sum.add(WINDOW[at + RADIUS - x], columns[at]);
-                const size_t i = size_t(y) * size_.x + x;
-                weights[i] = weight(i, sum);
+                windows.push_back(sum);
             }
         }
+        return windows;
     }
 
-  private:
     // Of the rows from `first` to `last`, exclusive. At the picture's edge, neighbours on the other side
     // count.
     std::vector<Moments> moments_of_rows(uint32_t first, uint32_t last) const {
@@ -216,18 +238,28 @@ class Weights {
         return result;
     }
 
-    float weight(size_t i, const Moments& sum) const {
+    // The share of a window's squared differences that noise does not explain.
+    double unexplained_of(const Moments& sum) const {
+        if (sum.noise <= 0.0) return 1.0;
+        return sum.square > 0.0 ? 1.0 - belief_.noise_share * sum.noise / sum.square : 0.0;
+    }
+
+    // The share by which neighbours agree.
+    double agreeing_of(const Moments& sum) const {
+        const double products = std::max(sum.beside.beyond_chance(), sum.below.beyond_chance());
+        return sum.square > 0.0 ? belief_.agreement_gain * products / sum.square : 0.0;
+    }
+
+    // With the share of the window's squared differences that is taken for a bias.
+    float weight(size_t i, const Moments& sum, double share) const {
         if (!is_finite_at(denoised_.rgb, i)) return 1.0f;
         if (!level_.holds(rgb_at(noisy_, i)) || !is_finite_at(variance_, i)) return 0.0f;
         if (sum.noise <= 0.0) return 1.0f;
         if (sum.square <= 0.0) return 0.0f;
-        const double unexplained = 1.0 - belief_.noise_share * sum.noise / sum.square;
-        const double agreeing = belief_.agreement_gain *
-                                std::max(sum.beside.beyond_chance(), sum.below.beyond_chance()) / sum.square;
-        const double biased = std::clamp(std::max(unexplained, agreeing), 0.0, 1.0) * sum.square;
+        const double biased = share * sum.square;
         const double own = noise_over_denoised(i) * sum.weight - OUTLIER * sum.noise;
         const double as_outlier = biased / std::max(sum.square, biased + belief_.noise_share * own);
-        return float(std::max(as_outlier, std::min(biased / sum.square, unexplained_alone(i))));
+        return float(std::max(as_outlier, std::min(share, unexplained_alone(i))));
     }
 
     // The share of a pixel's squared difference that its own noise does not explain.

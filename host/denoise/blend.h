@@ -20,11 +20,12 @@ namespace candela {
 //
 // Samples of low-discrepancy sequences err less than V says, and a bias could hide behind it. But noise
 // differs from pixel to pixel, while a bias has the same sign along an edge: the weight is at least what the
-// share of E d^2 says by which neighbours agree, beyond 1.75 standard deviations of what agrees by chance.
-// Both become stricter with `samples_per_pixel` (0 if unknown), when there is more to lose than to win: up to
-// 16 samples, V counts for 1.2 and the share for 1; at 256, for 1 and 4; from 4096 on, for 0.1 and 4. Few
-// samples tell V badly, and 0 where they found nothing: up to 256, a V below the mean of the pixels around
-// whose denoised values are similar is raised to that.
+// share of E d^2 says by which neighbours agree, beyond 1.5 standard deviations of what agrees by chance.
+// Noise with a heavy tail still agrees in spots, while a bias is as long as an edge: of either share counts
+// what is as long as a line, of 3 pixels and of 7. Both become stricter with `samples_per_pixel` (0 if
+// unknown), when there is more to lose than to win: up to 16 samples, V counts for 1.2 and the share for 1;
+// at 256, for 1 and 4; from 4096 on, for 0.1 and 4. Few samples tell V badly, and 0 where they found nothing:
+// up to 256, a V below the mean of the pixels around whose denoised values are similar is raised to that.
 //
 // A lone outlier has its own say: as far as its V, relative to the denoised value, is above four times the
 // noise around, it counts beside the bias b^2 that the window shows, and the weight is b^2 / (b^2 + V). But

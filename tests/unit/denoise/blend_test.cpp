@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "probe/random.h"
+
 namespace candela {
 namespace {
 
@@ -170,6 +172,32 @@ TEST(Blend, WhatAgreesByChanceIsNoBias) {
         EXPECT_EQ(weight, 0.0f);
 }
 
+// Three by three pixels that agree are no edge, but chance in a window of heavy-tailed noise; two rows are an
+// edge.
+TEST(Blend, WhatAgreesInASpotIsNoBias) {
+    const auto weight_of = [](uvec2 agreeing) {
+        Planes noisy = filled(1.0f);
+        for (size_t c = 0; c < 3; ++c) {
+            for (uint32_t y = 0; y < agreeing.y; ++y)
+                std::fill_n(&noisy[c][(40 + y) * SIZE.x + 40], agreeing.x, 1.5f);
+        }
+        return weights_of(noisy, filled(0.25f), filled(1.0f))[41 * SIZE.x + 41];
+    };
+    EXPECT_EQ(weight_of({3, 3}), 0.0f);
+    EXPECT_EQ(weight_of({60, 2}), 1.0f);
+}
+
+// Noise explains the differences but for one pixel, four times whose square is in the windows of those around
+// with less weight: 9 of 81 in its own, and at most 6 in theirs. It lies between the two.
+TEST(Blend, WhatNoiseDoesNotExplainInOneWindowAloneIsChance) {
+    Planes noisy = checkered(1.0f, 0.1f);
+    const size_t at = 10 * SIZE.x + 10;
+    for (size_t c = 0; c < 3; ++c)
+        noisy[c][at] = 1.2f;
+    const float variance = float((81.0 + 7.5 * 3.0) / 81.0 * 0.01 / 1.1);
+    EXPECT_EQ(weights_of(noisy, filled(variance), filled(1.0f))[at], 0.0f);
+}
+
 // A pixel in which one sample met the sun by chance: its own noise counts, though around it all is bias. The
 // window shows a squared difference of at most 1 a channel, relative to the level; noise is 10^6 times that
 // of the denoised value, less four times that of the window (at most 1). So the weight is at most 1 / 1.1 of
@@ -232,6 +260,30 @@ TEST(Blend, TheGreatestValuesAreReplaced) {
     const std::vector<float> weights = weights_of(noisy, filled(0.001f), filled(1.0f));
     EXPECT_EQ(weights[500], 0.0f);
     EXPECT_NEAR(weights[501], 1.0 - 1.1 * 0.1, 1e-5);
+}
+
+// Weights are computed in strips of rows. A picture without its first rows has other strips.
+TEST(Blend, StripsLeaveNoTrace) {
+    constexpr uint32_t ROWS = 16, REACH = 11;
+    Random random(12);
+    Planes noisy = filled(0.0f);
+    for (std::vector<float>& plane : noisy) {
+        for (float& value : plane)
+            value = 0.5f + random.unit();
+    }
+    const auto without_rows = [&](const Planes& planes) {
+        Planes rest;
+        for (size_t c = 0; c < 3; ++c)
+            rest[c].assign(planes[c].begin() + ROWS * SIZE.x, planes[c].end());
+        return rest;
+    };
+    const Planes variance = filled(0.05f), denoised = filled(1.0f);
+    const std::vector<float> weights = weights_of(noisy, variance, denoised);
+    const std::vector<float> others =
+        noisy_weights({SIZE.x, SIZE.y - ROWS}, view(without_rows(noisy)), view(without_rows(variance)),
+                      {without_rows(denoised), {}, {}});
+    for (size_t i = (ROWS + REACH) * SIZE.x; i < PIXEL_COUNT; ++i)
+        ASSERT_NEAR(weights[i], others[i - ROWS * SIZE.x], 1e-6) << i;
 }
 
 TEST(Blend, OnePixelIsEnough) {
