@@ -163,11 +163,14 @@ TEST(Blend, WhereNeighboursAgreeTheDifferenceIsABias) {
     }
 }
 
-// Two outliers side by side agree, but one product of differences is no agreement.
+// Two outliers side by side agree, but one product of differences is no agreement, even where each window
+// along a row has one.
 TEST(Blend, WhatAgreesByChanceIsNoBias) {
     Planes noisy = filled(1.0f);
-    for (size_t c = 0; c < 3; ++c)
-        noisy[c][10 * SIZE.x + 10] = noisy[c][10 * SIZE.x + 11] = 1.5f;
+    for (size_t c = 0; c < 3; ++c) {
+        for (uint32_t x = 0; x + 1 < SIZE.x; x += 5)
+            noisy[c][10 * SIZE.x + x] = noisy[c][10 * SIZE.x + x + 1] = 1.5f;
+    }
     for (const float weight : weights_of(noisy, filled(0.25f), filled(1.0f)))
         EXPECT_EQ(weight, 0.0f);
 }
