@@ -2,6 +2,7 @@
 #include "denoise/opening.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <gtest/gtest.h>
 
