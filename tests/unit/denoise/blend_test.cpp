@@ -190,8 +190,8 @@ TEST(Blend, WhatAgreesInASpotIsNoBias) {
     EXPECT_EQ(weight_of({60, 2}), 1.0f);
 }
 
-// Noise explains the differences but for one pixel, four times whose square is in the windows of those around
-// with less weight: 9 of 81 in its own, and at most 6 in theirs. It lies between the two.
+// Noise explains all differences but that of one pixel, whose square is four times theirs. It has 9 of the 81
+// weights of its own window, and at most 6 in those around; the variance would explain 7.5.
 TEST(Blend, WhatNoiseDoesNotExplainInOneWindowAloneIsChance) {
     Planes noisy = checkered(1.0f, 0.1f);
     const size_t at = 10 * SIZE.x + 10;
