@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -186,19 +187,19 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
     std::optional<Opened> before;  // What the window showed when a file was dropped onto it.
     std::string failure;           // Why it shows that again.
     while (next) {
-        options.name = next->name;
-        options.command_line = next->command_line;
-        options.start_page = next->start_page;
+        Opened shown = *std::exchange(next, std::nullopt);
+        options.name = shown.name;
+        options.command_line = shown.command_line;
+        options.start_page = shown.start_page;
         std::optional<Viewer> viewer;
         try {
-            viewer.emplace(window, instance, std::move(next->scene), next->state, options);
+            viewer.emplace(window, instance, std::move(shown.scene), shown.state, options);
         } catch (const Error& error) {
             if (!before) throw;
             next = std::exchange(before, std::nullopt);
             failure = error.what();
             continue;
         }
-        next.reset();
         before.reset();
         if (!failure.empty()) viewer->tell(std::exchange(failure, {}));
         complete = viewer->run();
@@ -217,12 +218,8 @@ ExitCode view(const ViewArguments& arguments, const std::string& command_line) {
         }
         attempts.finish();
         if (next) {
-            auto [scene, state] = std::move(*viewer).leave();
-            before = {.scene = std::move(scene),
-                      .state = std::move(state),
-                      .name = options.name,
-                      .command_line = options.command_line,
-                      .start_page = options.start_page};
+            std::tie(shown.scene, shown.state) = std::move(*viewer).leave();
+            before = std::move(shown);
         }
     }
     check_validation(instance);

@@ -127,7 +127,7 @@ class Weights {
             std::vector<float> shares(windows.size());
             for (size_t i = 0; i < shares.size(); ++i)
                 shares[i] = float(std::clamp((this->*share)(windows[i]), 0.0, 1.0));
-            return opened(shares, {size_.x, after - before}, radius);
+            return opened_by_lines(shares, {size_.x, after - before}, radius);
         };
         const std::vector<float> unexplained = along_lines(&Weights::unexplained_of, UNEXPLAINED_RADIUS);
         const std::vector<float> agreeing = along_lines(&Weights::agreeing_of, AGREEING_RADIUS);

@@ -28,7 +28,7 @@ std::vector<float> along(const std::vector<float>& plane, uvec2 size, glm::ivec2
 
 }  // namespace
 
-std::vector<float> opened(const std::vector<float>& plane, uvec2 size, uint32_t radius) {
+std::vector<float> opened_by_lines(const std::vector<float>& plane, uvec2 size, uint32_t radius) {
     assert(plane.size() == size_t(size.x) * size.y);
     const auto lower = [](float a, float b) { return std::min(a, b); };
     const auto higher = [](float a, float b) { return std::max(a, b); };

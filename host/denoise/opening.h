@@ -14,6 +14,6 @@ namespace candela {
 // follows from those up to 2 radius away.
 //
 // Ref: Soille, Talbot, "Directional Morphological Filtering", IEEE PAMI 23(11), 2001.
-std::vector<float> opened(const std::vector<float>& plane, uvec2 size, uint32_t radius);
+std::vector<float> opened_by_lines(const std::vector<float>& plane, uvec2 size, uint32_t radius);
 
 }  // namespace candela

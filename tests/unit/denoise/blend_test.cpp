@@ -265,7 +265,8 @@ TEST(Blend, TheGreatestValuesAreReplaced) {
     EXPECT_NEAR(weights[501], 1.0 - 1.1 * 0.1, 1e-5);
 }
 
-// Weights are computed in strips of rows. A picture without its first rows has other strips.
+// Weights are computed in strips of rows. A picture without its first rows has other strips. A weight follows
+// from pixels up to 11 away: 6 by the lines, 2 by the window, 1 by neighbours, and 2 by their variances.
 TEST(Blend, StripsLeaveNoTrace) {
     constexpr uint32_t ROWS = 16, REACH = 11;
     Random random(12);

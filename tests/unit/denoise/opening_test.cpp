@@ -45,7 +45,7 @@ TEST(Opening, IsWhatItsDefinitionSays) {
         for (float& value : plane)
             value = random.unit();
         for (const uint32_t radius : {0u, 1u, 3u})
-            EXPECT_EQ(opened(plane, size, radius), opened_by_definition(plane, size, int(radius)));
+            EXPECT_EQ(opened_by_lines(plane, size, radius), opened_by_definition(plane, size, int(radius)));
     }
 }
 
